@@ -92,6 +92,7 @@ mod shift;
 mod signing;
 #[cfg(target_os = "linux")]
 #[path = "acceptance/slurm.rs"]
+mod slow_line;
 mod slurm;
 #[path = "acceptance/stopping.rs"]
 mod stopping;

@@ -98,7 +98,7 @@ fn a_run_is_recovered_wherever_its_journal_stops() {
     let end_of = |lines: usize| text.match_indices('\n').nth(lines - 1).unwrap().0 + 1;
     // The amount of journal that is present, and the message about it.
     let cases = [
-        (end_of(1), "the journal holds everything up to T+0.0 s"),
+        (end_of(1), "the journal holds everything up to T+00:00:00"),
         (end_of(60) - 20, "is cut off after"),
         (end_of(60), "the journal holds everything up to T+"),
         (text.len(), "missing:\n  wall-clock figures"),

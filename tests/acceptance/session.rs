@@ -13,6 +13,9 @@ use std::{
 };
 
 const PATIENCE: Duration = Duration::from_mins(1);
+/// What a slow terminal takes at a time, bytes, and how often.
+const SLOW_PART: usize = 100;
+const SLOW_PART_EVERY: Duration = Duration::from_millis(50);
 /// After this time, a key that had no effect is pressed again.
 const AGAIN: Duration = Duration::from_secs(5);
 
@@ -27,6 +30,8 @@ pub(crate) struct Session {
     master: Option<Box<dyn MasterPty + Send>>,
     /// Whether the terminal has been closed; its reader then closes it, too.
     closed: Arc<AtomicBool>,
+    /// Whether the terminal takes bytes only slowly.
+    is_slow: Arc<AtomicBool>,
 }
 
 fn screen_of(width: u16, height: u16) -> vt100::Parser {
@@ -69,9 +74,18 @@ impl Session {
         let kept = Arc::clone(&written);
         let closed = Arc::new(AtomicBool::new(false));
         let is_closed = Arc::clone(&closed);
+        let is_slow = Arc::new(AtomicBool::new(false));
+        let slow = Arc::clone(&is_slow);
         std::thread::spawn(move || {
             let mut bytes = [0; 8192];
-            while let Ok(count) = output.read(&mut bytes) {
+            loop {
+                let most = if slow.load(Ordering::SeqCst) {
+                    std::thread::sleep(SLOW_PART_EVERY);
+                    SLOW_PART
+                } else {
+                    bytes.len()
+                };
+                let Ok(count) = output.read(&mut bytes[..most]) else { return };
                 if count == 0 || is_closed.load(Ordering::SeqCst) {
                     return;
                 }
@@ -80,7 +94,12 @@ impl Session {
             }
         });
         let keys = pair.master.take_writer().unwrap();
-        Self { bench, screen, written, keys, child, master: Some(pair.master), closed }
+        Self { bench, screen, written, keys, child, master: Some(pair.master), closed, is_slow }
+    }
+
+    /// Lets the terminal take only [`SLOW_PART`] bytes at a time from now on: 2 kB/s.
+    pub(crate) fn slow_down(&self) {
+        self.is_slow.store(true, Ordering::SeqCst);
     }
 
     pub(crate) fn text(&self) -> String {

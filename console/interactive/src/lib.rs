@@ -2,6 +2,7 @@
 
 pub mod config;
 
+mod backlog;
 mod checking;
 mod combining;
 mod comparing;

@@ -187,11 +187,16 @@ fn past_run(listed: &Listed) -> PastRun {
     }
 }
 
+/// What to do with a run whose console was killed.
+const NEXT_AFTER_CRASH: &str =
+    ". Re-scan the rest from the list of runs (:rescan); `tankops recover` closes the run for a signature";
+
 fn attention(runs: &[PastRun], scenarios: &[ScenarioEntry]) -> Vec<Attention> {
     let bad_ends = ["CRASHED", "RECORDING FAILED", "UNREADABLE"];
     let bad_runs = runs.iter().take(RECENT).filter(|run| bad_ends.contains(&run.end.as_str())).map(|run| {
         let note = run.note.clone().unwrap_or_default();
-        point(Severity::Warn, &run.end, format!("run {}: {note}", run.name))
+        let next = if run.end == "CRASHED" { NEXT_AFTER_CRASH } else { "" };
+        point(Severity::Warn, &run.end, format!("run {}: {note}{next}", run.name))
     });
     let invalid = scenarios.iter().filter_map(|entry| {
         let problem = entry.problem.as_ref()?;

@@ -1,7 +1,13 @@
 //! The drawing thread: takes messages, updates the model, carries out effects, and draws a frame when something has
 //! changed.
 
-use super::{measure::Measure, reading::Frames, session::Session, watch::SharedPlaces};
+use super::{
+    backlog::{self, Line},
+    measure::Measure,
+    reading::Frames,
+    session::Session,
+    watch::SharedPlaces,
+};
 use crate::Drill;
 use anyhow::Context;
 use flight::failure::{COMPLETE, exit_code, mission_code};
@@ -25,15 +31,10 @@ const BURST_TIME: Duration = Duration::from_millis(5);
 const SETTLE: Duration = Duration::from_secs(1);
 /// The shortest time between two frames that only show new values of a robot at rest.
 const CALM_FRAME: Duration = Duration::from_secs(1);
-/// The largest data rate for new values, in bytes per second: on a local line, on a line over SSH, and on any line while
-/// the robot is at rest. Answers to keys are not delayed.
-const LINE_RATE: f64 = 15_000.0;
-const SSH_RATE: f64 = 9_500.0;
+/// The largest data rate for new values while the robot is at rest, in bytes per second.
 const CALM_RATE: f64 = 200.0;
 /// The longest time between two frames that show a robot at rest.
 const LONGEST_CALM: Duration = Duration::from_secs(4);
-/// The longest time that new values wait until the line to the terminal is free, even after a complete redraw.
-const LONGEST_DEBT: Duration = Duration::from_millis(250);
 /// The shortest time between two frames that answer keys.
 const KEY_FRAME: Duration = Duration::from_millis(8);
 
@@ -46,8 +47,7 @@ pub(super) struct Screen {
     frame_interval: Duration,
     /// The shortest time between the last frame and a frame that only shows new values of a robot at rest.
     calm_pause: Duration,
-    /// How long a line with the largest data rate needs to transmit the last frame.
-    line_busy: Duration,
+    line: Line,
     /// How soon a frame must be drawn.
     due: Redraw,
     cache: Cache,
@@ -75,7 +75,7 @@ impl Screen {
         frames: Frames,
         drill: Option<Drill>,
     ) -> anyhow::Result<Self> {
-        let mut terminal = TerminalGuard::enter().context("taking over the terminal")?;
+        let mut terminal = TerminalGuard::enter(backlog::clock).context("taking over the terminal")?;
         terminal.take_mouse(session.model.ui.mouse).context("enabling the mouse")?;
         let (width, height) = crossterm::terminal::size().unwrap_or((80, 24));
         session.take(Msg::Resize { width, height });
@@ -87,7 +87,7 @@ impl Screen {
             // A slow line gets fewer frames.
             frame_interval: Duration::from_millis(if caps.ssh { 100 } else { 33 }),
             calm_pause: CALM_FRAME,
-            line_busy: Duration::ZERO,
+            line: Line::new(caps.ssh),
             due: Redraw::Soon,
             cache: Cache::default(),
             places,
@@ -124,9 +124,11 @@ impl Screen {
     fn pause(&self) -> Option<Duration> {
         match self.due {
             Redraw::No => None,
-            Redraw::Calm => Some(self.calm_pause),
-            Redraw::Soon if self.answer_seen => Some(KEY_FRAME),
-            Redraw::Soon => Some(self.frame_interval.max(self.line_busy)),
+            Redraw::Calm => Some(self.calm_pause.max(self.line.busy())),
+            // On a slow line, an early answer would only wait behind the frame before.
+            Redraw::Soon if self.answer_seen && !self.line.is_slow() => Some(KEY_FRAME),
+            Redraw::Soon if self.answer_seen => Some(KEY_FRAME.max(self.line.busy())),
+            Redraw::Soon => Some(self.frame_interval.max(self.line.busy())),
         }
     }
 
@@ -237,14 +239,14 @@ impl Screen {
         let failing = self.drill == Some(Drill::PanicScreen) && is_under_way;
         assert!(!failing, "drill: the screen fails on purpose");
         let (model, caps, cache) = (&self.session.model, &self.caps, &mut self.cache);
-        let bytes =
+        let sent =
             self.terminal.draw(|frame| tui::view_cached(model, caps, cache, frame)).context("drawing")?;
         // A frame that was delayed because the line was busy was not skipped.
-        let interval = self.frame_interval.max(self.line_busy);
-        self.calm_pause = taken(bytes, CALM_RATE).clamp(CALM_FRAME, LONGEST_CALM);
-        let left = self.line_busy.saturating_sub(self.drawn.elapsed());
-        self.line_busy =
-            (left + taken(bytes, if self.caps.ssh { SSH_RATE } else { LINE_RATE })).min(LONGEST_DEBT);
+        let interval = self.frame_interval.max(self.line.busy());
+        let calm = Duration::from_secs_f64(sent.bytes as f64 / CALM_RATE);
+        self.calm_pause = calm.clamp(CALM_FRAME, LONGEST_CALM);
+        self.line.sent(sent, self.drawn.elapsed());
+        self.terminal.set_slow(self.line.is_slow());
         if model.ui.mouse {
             self.places.set(self.cache.places());
         }
@@ -254,11 +256,6 @@ impl Screen {
         (self.drawn, self.due, self.answer_seen) = (now, Redraw::No, false);
         Ok(())
     }
-}
-
-/// The time to send this many bytes at a rate in bytes per second.
-fn taken(bytes: usize, rate: f64) -> Duration {
-    Duration::from_secs_f64(bytes as f64 / rate)
 }
 
 /// Whether the operator is waiting to see this message: a key, a stop of the robot, or the result of seeking in a past

@@ -2,14 +2,12 @@
 
 use crate::{
     anchor::{Anchor, anchored, on_near_circle},
-    fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Prior, Ranging},
+    fix::{CUT_SIGMAS, Exclusion, Fix, FixError, Integrity, PositionSolver, Prior, Ranging},
     linear::solve_linear,
     nonlinear::{Slope, solve_anchors},
 };
 use world::{Point, Station};
 
-/// The number of sigmas above which a residual indicates a wrong range.
-const CUT_SIGMAS: f64 = 3.0;
 /// The number of Newton steps on a subset of three; the linear start is already close.
 const SUBSET_STEPS: usize = 2;
 /// The largest number of subsets that are tried before some are skipped: enough for all subsets of ten stations.

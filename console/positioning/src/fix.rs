@@ -64,6 +64,28 @@ pub struct Residual {
     pub sigma_m: f64,
 }
 
+/// The residual beyond which a range contradicts a position, standard deviations.
+pub(crate) const CUT_SIGMAS: f64 = 3.0;
+
+impl Residual {
+    /// Returns the largest residual that does not contradict the fix, metres: three standard deviations, at which the
+    /// robust solver leaves a range out.
+    pub fn limit_m(&self) -> f64 {
+        CUT_SIGMAS * self.sigma_m
+    }
+
+    /// Returns whether the residual contradicts the fix although the station is used in it.
+    ///
+    /// ```
+    /// use positioning::Residual;
+    /// let residual = |residual_m| Residual { station: world::StationId(1), residual_m, sigma_m: 0.05 };
+    /// assert!(residual(-0.16).is_beyond() && !residual(0.14).is_beyond());
+    /// ```
+    pub fn is_beyond(&self) -> bool {
+        self.residual_m.abs() > self.limit_m()
+    }
+}
+
 /// The reason why a station was left out.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

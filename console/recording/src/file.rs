@@ -51,8 +51,8 @@ pub fn sha256_of(bytes: &[u8]) -> String {
 /// The difference between a file on disk and the file that was opened and written.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FileChange {
-    /// The file was deleted from its path.
-    #[error("the file was deleted: {}", path.display())]
+    /// The file was deleted or moved from its path.
+    #[error("the file was deleted or moved: {}", path.display())]
     Deleted {
         /// The file.
         path: PathBuf,

@@ -67,6 +67,6 @@ pub(crate) fn is_locked(folder: &Path) -> bool {
 pub(crate) fn held(summary: &Summary) -> String {
     summary.mission_time_s.map_or_else(
         || "the journal is empty".into(),
-        |until_s| format!("the journal holds everything up to T+{until_s:.1} s"),
+        |until_s| format!("the journal holds everything up to T+{}", account::clock(until_s)),
     )
 }

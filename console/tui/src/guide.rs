@@ -49,7 +49,7 @@ pub fn name(cause: &Cause, of: &Run) -> String {
         Cause::Stuck => "robot stuck".into(),
         Cause::Ended => "mission ended early".into(),
         Cause::Recording => "recording FAILED".into(),
-        Cause::Writer => "console of this run has exited".into(),
+        Cause::Writer => "console of this run was killed".into(),
         Cause::Console => "part of the console failed".into(),
         Cause::Response => "console responds slowly".into(),
         Cause::Frames => "screen skips frames".into(),

@@ -39,19 +39,22 @@ const fn wish(pane: Pane, least: u16, rows: u16) -> Wish {
 pub(crate) struct Shown {
     /// Whether there is a tether.
     pub tether: bool,
+    /// Whether the reel of the tether is described, so that there are pulls to show.
+    pub reel: bool,
     /// Whether the missed areas are known.
     pub missed: bool,
     /// The number of AE stations.
     pub stations: u16,
-    /// Whether the operator has turned to the table of the stations, which then takes the place of other panes.
-    pub table: bool,
+    /// The table of the stations or the tether, if the operator has turned to it; it then takes the place of other
+    /// panes.
+    pub turned: Option<Pane>,
 }
 
 impl Shown {
     /// What the layout must show for a run.
     pub(crate) fn of(run: &Run, missed: bool) -> Self {
         let stations = run.about.as_ref().map_or(0, |about| about.world.stations.len() as u16);
-        Self { tether: run.tether.is_some(), missed, stations, table: false }
+        Self { tether: run.tether.is_some(), reel: run.reel().is_some(), missed, stations, turned: None }
     }
 }
 
@@ -73,6 +76,9 @@ pub(crate) fn mission(area: Rect, (width, height): (u16, u16), shown: Shown) -> 
     let [middle, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(events)]).areas(area);
     let floor_rows = middle.height.saturating_sub(MAP_FRAME);
     let side = width.saturating_sub(MAP.0 * floor_rows + MAP.1).clamp(n_stacks * STACK.0, n_stacks * STACK.1);
+    let turned = shown.turned.filter(|pane| *pane != Pane::Stations || shown.stations > 0);
+    let turned = turned.filter(|_| n_stacks == 1);
+    let side = if turned.is_some() { side.max(STACK.1) } else { side };
     let [map, side] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(side)]).areas(middle);
     let has_alarms_below = n_stacks == 2 && width >= 200 && height >= 60;
     let mut placed = vec![(Pane::Map, map)];
@@ -81,11 +87,16 @@ pub(crate) fn mission(area: Rect, (width, height): (u16, u16), shown: Shown) -> 
         // A shorter screen names the stations in a row of the position pane.
         let has_table = width >= 100 && side.height >= TABLE_ROWS && shown.stations > 0;
         let table = wish(Pane::Stations, 6, 2 * shown.stations + 3);
+        let tether = wish(Pane::Tether, 9, 12);
         if has_table {
             wishes.push(wish(Pane::Stations, 6, shown.stations + 3));
-        } else if shown.table && arrangement == Arrangement::Wide {
-            wishes.retain(|wish| matches!(wish.pane, Pane::Position | Pane::Tether));
-            wishes.insert(1, table);
+        } else if let Some(turned) = turned {
+            let is_kept = |pane| match arrangement {
+                Arrangement::Narrow => pane == Pane::Position,
+                _ => matches!(pane, Pane::Position | Pane::Tether),
+            };
+            wishes.retain(|wish| is_kept(wish.pane));
+            wishes.insert(1.min(wishes.len()), if turned == Pane::Tether { tether } else { table });
         }
         placed.extend(stack(side, &wishes));
     } else {
@@ -153,7 +164,10 @@ pub(crate) fn plan(
 /// The panes on a page of a small screen.
 pub(crate) fn page(area: Rect, pane: Pane, shown: Shown) -> Vec<(Pane, Rect)> {
     match pane {
-        Pane::Planner if shown.tether => stack(area, &[wish(Pane::Tether, 5, 6), wish(Pane::Planner, 4, 20)]),
+        Pane::Planner if shown.tether => {
+            let rows = if shown.reel { 9 } else { 6 };
+            stack(area, &[wish(Pane::Tether, 5, rows), wish(Pane::Planner, 4, 20)])
+        }
         pane => vec![(pane, area)],
     }
 }
@@ -161,7 +175,8 @@ pub(crate) fn page(area: Rect, pane: Pane, shown: Shown) -> Vec<(Pane, Rect)> {
 /// The panes beside the map. The panes about conditions that can end a mission come first.
 fn first(shown: Shown, wide: bool) -> Vec<Wish> {
     let rows = |full: u16, short: u16| if wide { full } else { short };
-    let tether = shown.tether.then_some(wish(Pane::Tether, 5, rows(10, 6)));
+    let (least, most) = if shown.reel { (rows(6, 5), rows(12, 7)) } else { (5, rows(10, 6)) };
+    let tether = shown.tether.then_some(wish(Pane::Tether, least, most));
     [wish(Pane::Position, 4, rows(8, 5))]
         .into_iter()
         .chain(tether)
@@ -263,7 +278,7 @@ mod tests {
     fn every_shown() -> impl Iterator<Item = Shown> {
         [(false, false), (true, false), (false, true), (true, true)]
             .into_iter()
-            .map(|(tether, missed)| Shown { tether, missed, stations: 6, table: false })
+            .map(|(tether, missed)| Shown { tether, reel: tether, missed, stations: 6, turned: None })
     }
 
     #[test]
@@ -287,7 +302,7 @@ mod tests {
 
     #[test]
     fn large_screens_have_two_stacks_ten_events_and_charts() {
-        let shown = Shown { tether: true, missed: false, stations: 6, table: false };
+        let shown = Shown { tether: true, reel: false, missed: false, stations: 6, turned: None };
         let place = |size: (u16, u16), pane| {
             placed(size.0, size.1, shown)
                 .into_iter()

@@ -130,7 +130,7 @@ const ROWS: &[Row] = &[
             &[&[On(Screen::Review), Rows]], view::review::draw) },
     Row { first: ActionId::Rescan, select: go::select_in_result,
         ..row(shows(Screen::Result, "result", "Screen 7: what was achieved", &[Key::Char('7')])
-                .when(|m| offer::demand(m.live.result.is_some(), "no run has ended yet")), "Result",
+                .when(|m| offer::demand(m.live.result.is_some(), offer::no_result(m))), "Result",
             &[&[On(Screen::Result), Map, Rows], &[On(Screen::Result), Map, Pan, Cursor]], view::result::draw) },
     Row { first: ActionId::Reload, select: act::select_plugin, has_selection: act::has_plugin, detail: view::plugins::extent,
         ..row(shows(Screen::Plugins, "plugins", "Screen 8: plugins and their planners", &[Key::Char('8')]), "Plugins",

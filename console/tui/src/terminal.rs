@@ -5,12 +5,14 @@ mod cells;
 mod clipboard;
 mod decode;
 mod key;
+mod meter;
 mod output;
 mod pointer;
 mod restore;
 
 pub use decode::{Decoder, Gesture, Input, Pointed};
 pub use key::Keyboard;
+pub use meter::Sent;
 pub use pointer::Pointer;
 pub use restore::{RESTORE, install_panic_hook, restore, restore_from_signal};
 
@@ -18,11 +20,11 @@ use backend::Thrifty;
 use crossterm::event::{EnableBracketedPaste, EnableFocusChange};
 use crossterm::terminal::{Clear, ClearType, EnterAlternateScreen, enable_raw_mode};
 use crossterm::{cursor, execute, queue};
+use meter::Meter;
 use output::FrameOutput;
 use ratatui::{Frame, Terminal};
 use std::io::{self, Write};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
 
 /// Turns on mouse reports: buttons, wheel and dragging, with coordinates of any size.
 const MOUSE_ON: &[u8] = b"\x1b[?1000h\x1b[?1002h\x1b[?1006h";
@@ -35,23 +37,24 @@ const MOUSE_OFF: &[u8] = b"\x1b[?1006l\x1b[?1002l\x1b[?1000l";
 pub struct TerminalGuard {
     terminal: Terminal<Thrifty>,
     has_mouse: bool,
-    sent: Arc<AtomicUsize>,
+    meter: Meter,
 }
 
 impl TerminalGuard {
-    /// Takes over the terminal: raw mode, alternate screen, bracketed paste, focus reports.
+    /// Takes over the terminal: raw mode, alternate screen, bracketed paste, focus reports. `clock` is a clock that never
+    /// goes back, with which the line to the terminal is measured.
     ///
     /// # Errors
     /// Fails if there is no terminal or writing to it fails; the terminal is restored first.
-    pub fn enter() -> io::Result<Self> {
+    pub fn enter(clock: fn() -> Duration) -> io::Result<Self> {
         restore::own();
-        let sent = Arc::default();
+        let meter = Meter::new(clock);
         let open = || {
             take_over()?;
-            Terminal::new(Thrifty::new(FrameOutput::counted(Arc::clone(&sent))))
+            Terminal::new(Thrifty::new(FrameOutput::measured(meter.clone())))
         };
         match open() {
-            Ok(terminal) => Ok(Self { terminal, has_mouse: false, sent }),
+            Ok(terminal) => Ok(Self { terminal, has_mouse: false, meter }),
             Err(error) => {
                 restore();
                 Err(error)
@@ -59,14 +62,18 @@ impl TerminalGuard {
         }
     }
 
-    /// Draws a frame: sends the changes since the last frame in one write, as one synchronized update. Returns the
-    /// number of bytes sent.
+    /// Draws a frame: sends the changes since the last frame as one synchronized update. Returns what was sent.
     ///
     /// # Errors
     /// Fails if writing to the terminal fails.
-    pub fn draw(&mut self, view: impl FnOnce(&mut Frame)) -> io::Result<usize> {
+    pub fn draw(&mut self, view: impl FnOnce(&mut Frame)) -> io::Result<Sent> {
         self.terminal.draw(view)?;
-        Ok(self.sent.swap(0, Ordering::Relaxed))
+        Ok(self.meter.take())
+    }
+
+    /// Sets whether the line to the terminal is slow. A terminal on a slow line shows frames while they arrive.
+    pub fn set_slow(&mut self, is_slow: bool) {
+        self.meter.set_slow(is_slow);
     }
 
     /// Makes the next frame draw every cell, without querying the terminal.

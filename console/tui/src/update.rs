@@ -90,7 +90,8 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
         Msg::Planners { found, refused } => take_planners(model, found, refused),
         Msg::Notice { severity, text } => news(model, &Cause::Console, severity, text),
     }
-    model.ui.without_scan = model.live.is_without_scan();
+    model.ui.parts.without_scan = model.live.is_without_scan();
+    model.ui.parts.tether = model.live.run.tether.is_some();
     events::refresh(model);
     unseen::note(model, question_before.as_ref());
     effects.extend(setting::follow(model, estimates_before));

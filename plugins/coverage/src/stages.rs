@@ -53,7 +53,7 @@ impl Stage<'_> {
 
     /// Reports how many of `n` items are done, and the progress of all of them, 0 to 1.
     pub(crate) fn report(&self, share: f64, n_done: usize, n: usize) {
-        self.ctx.progress(self.at(share), &format!("{}, {n_done} of {n} done", self.what));
+        self.ctx.progress(self.at(share), &format!("{}: {n_done} of {n} worked out", self.what));
     }
 
     fn at(&self, share: f64) -> f64 {
@@ -79,9 +79,9 @@ mod tests {
         let progress = |share, what: &str| (share, what.to_owned());
         let all = [
             progress(0.0, "cuts"),
-            progress(0.375, "lanes, 1 of 2 done"),
+            progress(0.375, "lanes: 1 of 2 worked out"),
             progress(0.625, "tour"),
-            progress(1.0, "the rest, 2 of 2 done"),
+            progress(1.0, "the rest: 2 of 2 worked out"),
         ];
         assert_eq!(bench.progress(), all);
     }

@@ -186,9 +186,6 @@ fn no_lane(workspace: &Workspace, reel_length_m: f64) -> Option<String> {
 fn warn(worth: &Worth, preferences: &Preferences, scope: &Scope<'_>, scans_enough: bool, ctx: &Ctx<'_>) {
     let warn = |message: &str| ctx.log(LogLevel::Warn, message);
     let (share, has_reel) = (percent_text(worth.coverage, 1), scope.reel_length_m.is_finite());
-    if !scans_enough && !has_reel {
-        warn(&format!("the plan scans {share} % of the requested floor"));
-    }
     if !worth.certificate.certified {
         warn(&format!("not certified: {}", worth.certificate.reasons.join("; ")));
     } else if preferences.pull_share(&Strain::from(&worth.certificate)) > 1.0 {
@@ -196,7 +193,9 @@ fn warn(worth: &Worth, preferences: &Preferences, scope: &Scope<'_>, scans_enoug
     } else if !worth.meets(preferences) {
         warn("no candidate keeps the cable within the preferred length and wrap");
     }
-    let scanned = format!("the plan scans {share} % of the reachable floor");
+    // The console counts by the mission's cells; here, a cell counts only if the lanes sweep the whole of it.
+    let scanned =
+        format!("the plan sweeps {share} % of the requested floor as the planner counts it, in whole cells");
     match (scans_enough, has_reel) {
         (true, _) => {}
         (false, true) => {

@@ -173,13 +173,13 @@ type Change = fn(&Path);
 #[test]
 fn what_happens_to_the_files_is_noticed_within_a_second_also_while_nothing_is_written() {
     let changes: [(&str, Change); 5] = [
-        ("the journal on disk differs from what was written: the file was deleted", |folder| {
+        ("the journal on disk differs from what was written: the file was deleted or moved", |folder| {
             fs::remove_dir_all(folder).expect("ours");
         }),
-        ("the journal on disk differs from what was written: the file was deleted", |folder| {
+        ("the journal on disk differs from what was written: the file was deleted or moved", |folder| {
             fs::remove_file(folder.join("events.jsonl.zst")).expect("ours");
         }),
-        ("the recording on disk differs from what was written: the file was deleted", |folder| {
+        ("the recording on disk differs from what was written: the file was deleted or moved", |folder| {
             fs::remove_file(folder.join("recording.rrd")).expect("ours");
         }),
         ("the journal on disk differs from what was written: the file was replaced", |folder| {

@@ -5,7 +5,7 @@ use crate::actions::ActionId;
 use crate::screens::Screen;
 
 pub(super) const RECORDING: Guide = Guide {
-    cause: "The journal or recording cannot be written, or was deleted, replaced or truncated.",
+    cause: "The journal or recording cannot be written, or was deleted, moved, replaced or truncated.",
     holds: "",
     effect: "The mission continues. About 40 minutes of the journal are kept in memory; anything deleted is \
     lost.",

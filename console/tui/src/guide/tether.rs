@@ -1,7 +1,9 @@
 //! The meaning of tether alarms.
 
-use super::remedy::{END, Guide, OTHER_PLANNER, RESUME, SHOW, STAY, When, run, wait};
+use super::remedy::{END, Guide, OTHER_PLANNER, RESUME, Remedy, SHOW, STAY, When, run, wait};
 use crate::actions::ActionId;
+
+const PULL_HOLD: Remedy = run("HOLD, and check reel and tether.", ActionId::Hold);
 
 /// The name of a tether alarm; `word` is the word used in its event.
 pub(super) fn name(word: &str) -> String {
@@ -13,6 +15,8 @@ pub(super) fn name(word: &str) -> String {
         "return path" => "return path BLOCKED".into(),
         "stray" => "robot crossed a cut of its plan".into(),
         "slack" => "tether SLACK".into(),
+        "reel pull" => "tether: reel too weak".into(),
+        "robot pull" => "tether pulls robot too hard".into(),
         other => format!("tether: {other}"),
     }
 }
@@ -78,6 +82,18 @@ pub(super) fn guide(word: &str) -> Guide {
                     END,
                 ]
             },
+        },
+        "reel pull" => Guide {
+            cause: "Taking up the tether from here needs more pull than the reel has.",
+            holds: "",
+            effect: "The reel stops taking up the tether, so slack lies on the floor.",
+            remedies: const { &[SHOW, PULL_HOLD, OTHER_PLANNER, END] },
+        },
+        "robot pull" => Guide {
+            cause: "The tether pulls the robot harder than the scenario permits (tether.robot_pull_n).",
+            holds: "",
+            effect: "The robot may slip, and its odometry with it.",
+            remedies: const { &[PULL_HOLD, SHOW, OTHER_PLANNER, END] },
         },
         "return path" => Guide {
             cause: "The hull does not fit through the return path along the tether.",

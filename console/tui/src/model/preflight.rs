@@ -7,7 +7,7 @@ mod vehicle;
 
 use super::{Model, ui::Arrangement};
 use account::LeftOut;
-use mission::{Check, CheckOutcome, PlanId, Readiness, TaskConfig};
+use mission::{Check, CheckOutcome, Phase, PlanId, Readiness, TaskConfig};
 use serde::{Deserialize, Serialize};
 use world::{beside_limit, coverage::percent_text};
 
@@ -157,9 +157,11 @@ impl Model {
                 };
                 check("plan", CheckOutcome::Warning, format!("{:.1} m, {what}", plan.length_m))
             }
-            (None, None) => {
-                check("plan", CheckOutcome::Failed, "no plan has been made; `:plan-again` makes one".into())
-            }
+            (None, None) => check(
+                "plan",
+                CheckOutcome::Failed,
+                "planning has not begun, or was cancelled; `plan-again` plans".into(),
+            ),
         }
     }
 
@@ -219,10 +221,13 @@ impl Model {
         if let Some(check) = of_survey.flatten() {
             return check;
         }
-        let (outcome, found) = match self.live.estimate() {
-            _ if stations < LEAST_STATIONS => {
-                (CheckOutcome::Warning, format!("{stations}: position from odometry alone"))
-            }
+        // Once the mission has started, the figures are those that the operator saw before the start.
+        let has_started = *self.live.run.phase() != Phase::Waiting;
+        let estimate = if has_started { self.live.promised() } else { self.live.estimate() };
+        let is_few = stations < LEAST_STATIONS;
+        let stations = if has_started { format!("{stations} at the start") } else { stations.to_string() };
+        let (outcome, found) = match estimate {
+            _ if is_few => (CheckOutcome::Warning, format!("{stations}: position from odometry alone")),
             None => (CheckOutcome::Warning, format!("{stations}; accuracy along the path not known yet")),
             Some(estimate) if estimate.without_fix_m > 0.0 => (
                 CheckOutcome::Warning,
@@ -240,7 +245,7 @@ impl Model {
                         (CheckOutcome::Passed, found)
                     }
                 }
-                None => (CheckOutcome::Passed, format!("{stations}")),
+                None => (CheckOutcome::Passed, stations),
             },
         };
         check("AE stations", outcome, found)

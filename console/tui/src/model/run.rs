@@ -151,6 +151,16 @@ impl Run {
         self.about.as_ref().is_some_and(|about| about.mission.live)
     }
 
+    /// The reel of the tether, if the scenario describes it.
+    pub fn reel(&self) -> Option<world::tether::Reel> {
+        self.about.as_ref()?.mission.tether.as_ref()?.reel
+    }
+
+    /// The largest permitted pull of the tether at the robot, newtons; `None` if the scenario gives none.
+    pub fn robot_pull_most_n(&self) -> Option<f64> {
+        self.reel()?.robot_pull_n
+    }
+
     /// The phase of the mission.
     pub fn phase(&self) -> &Phase {
         &self.standing.phase

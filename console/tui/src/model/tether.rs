@@ -57,6 +57,9 @@ pub struct Tether {
     pub length_history_m: History,
     /// The history of the largest wrap, degrees.
     pub wrap_history_deg: History,
+    /// The history of the measured pull, newtons; empty without a sensor.
+    #[serde(default)]
+    pub pull_history_n: History,
 }
 
 impl Tether {
@@ -91,6 +94,9 @@ impl Tether {
             self.length_history_m.add(t_s, self.length_m);
             let wrap_rad = self.largest().map_or(0.0, |contact| contact.wrap_rad.abs());
             self.wrap_history_deg.add(t_s, wrap_rad.to_degrees());
+            if let Some(MeasuredPull { pull_n, .. }) = measured {
+                self.pull_history_n.add(t_s, *pull_n);
+            }
         }
     }
 }

@@ -11,6 +11,15 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use world::Point;
 
+/// What a mission has, as far as its panes depend on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct MissionParts {
+    /// Whether the mission does not scan, so that its result has no panes about the floor.
+    pub without_scan: bool,
+    /// Whether the mission has a tether, whose pane then has a page of its own on a narrow terminal.
+    pub tether: bool,
+}
+
 /// What the operator is looking at.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Ui {
@@ -36,9 +45,9 @@ pub struct Ui {
     /// The number of rows by which the pane of text is scrolled that responds to the arrow keys.
     #[serde(default)]
     pub scrolled: usize,
-    /// Whether the open mission does not scan, so that its result has no panes about the floor.
+    /// What the open mission has, as far as its panes depend on it.
     #[serde(default)]
-    pub without_scan: bool,
+    pub parts: MissionParts,
     /// On a screen with a list, whether the arrow keys apply to the details of the selected row.
     #[serde(default)]
     pub in_detail: bool,
@@ -78,7 +87,7 @@ impl Default for Ui {
             missed: 0,
             plate: 0,
             scrolled: 0,
-            without_scan: false,
+            parts: MissionParts::default(),
             in_detail: false,
             left_out: 0,
             plugin: 0,
@@ -138,7 +147,9 @@ pub enum Pane {
 
 impl Pane {
     /// The panes that are shown one at a time on a small terminal, in Tab order.
-    pub const PAGES: [Self; 5] = [Self::Map, Self::Coverage, Self::Position, Self::Planner, Self::Events];
+    #[rustfmt::skip]
+    pub const PAGES: [Self; 6] =
+        [Self::Map, Self::Coverage, Self::Position, Self::Stations, Self::Planner, Self::Events];
     /// The panes of the plan screen that are shown one at a time on a small terminal, in Tab order.
     pub const PLAN_PAGES: [Self; 5] =
         [Self::Map, Self::Promise, Self::LeftOut, Self::Checks, Self::Parameters];
@@ -553,7 +564,7 @@ impl Ui {
             (Screen::Plan, Arrangement::Narrow) => return &Pane::PLAN_PARTS,
             (Screen::Plan, Arrangement::Paged) => return &Pane::PLAN_PAGES,
             (Screen::Result, Arrangement::Wide | Arrangement::Narrow | Arrangement::Paged)
-                if self.without_scan =>
+                if self.parts.without_scan =>
             {
                 return &Pane::RESULT_WITHOUT_SCAN;
             }
@@ -566,8 +577,10 @@ impl Ui {
             _ => return &[],
         }
         match self.arrangement() {
-            Arrangement::Wide => &[Pane::Map, Pane::Events, Pane::Stations],
-            Arrangement::Narrow => &[Pane::Map, Pane::Events],
+            Arrangement::Narrow if self.parts.tether => {
+                &[Pane::Map, Pane::Events, Pane::Stations, Pane::Tether]
+            }
+            Arrangement::Wide | Arrangement::Narrow => &[Pane::Map, Pane::Events, Pane::Stations],
             Arrangement::Paged => &Pane::PAGES,
             Arrangement::Strip => &[],
         }

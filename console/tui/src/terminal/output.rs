@@ -1,16 +1,16 @@
 //! Output to the terminal, one frame at a time.
 
+use super::meter::Meter;
 use super::restore::is_taken;
 use std::io::{self, Stdout, Write};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Begins a synchronized update: the terminal shows nothing until the frame is complete.
 const BEGIN: &[u8] = b"\x1b[?2026h";
 /// Ends the synchronized update: the terminal shows the frame.
 const END: &[u8] = b"\x1b[?2026l";
 
-/// Buffers everything until the flush and then sends it as one synchronized update.
+/// Buffers everything until the flush and then sends it as one synchronized update; on a slow line, the terminal shows
+/// a frame while it arrives, because the state of the robot comes first.
 ///
 /// After the terminal has been restored, further output is dropped, because half a frame must not reach the shell's
 /// screen after a panic or at exit.
@@ -18,14 +18,13 @@ pub(super) struct FrameOutput<W: Write = Stdout> {
     bytes: Vec<u8>,
     to: W,
     is_ours: fn() -> bool,
-    /// The number of bytes sent since the counter was last read.
-    sent: Arc<AtomicUsize>,
+    meter: Meter,
 }
 
 impl FrameOutput {
-    /// Creates an output that counts the bytes sent.
-    pub(super) fn counted(sent: Arc<AtomicUsize>) -> Self {
-        Self { bytes: BEGIN.to_vec(), to: io::stdout(), is_ours: is_taken, sent }
+    /// Creates an output that is measured.
+    pub(super) fn measured(meter: Meter) -> Self {
+        Self { bytes: BEGIN.to_vec(), to: io::stdout(), is_ours: is_taken, meter }
     }
 }
 
@@ -41,9 +40,13 @@ impl<W: Write> Write for FrameOutput<W> {
             return Ok(());
         }
         if self.bytes.len() > BEGIN.len() {
-            self.bytes.extend_from_slice(END);
-            self.sent.fetch_add(self.bytes.len(), Ordering::Relaxed);
-            let sent = self.to.write_all(&self.bytes);
+            let frame = if self.meter.is_slow() {
+                &self.bytes[BEGIN.len()..]
+            } else {
+                self.bytes.extend_from_slice(END);
+                &self.bytes
+            };
+            let sent = self.meter.write(&mut self.to, frame);
             self.bytes.truncate(BEGIN.len());
             sent?;
         }
@@ -56,7 +59,12 @@ mod tests {
     use super::*;
 
     fn output() -> FrameOutput<Vec<u8>> {
-        FrameOutput { bytes: BEGIN.to_vec(), to: Vec::new(), is_ours: || true, sent: Arc::default() }
+        FrameOutput {
+            bytes: BEGIN.to_vec(),
+            to: Vec::new(),
+            is_ours: || true,
+            meter: Meter::new(|| std::time::Duration::ZERO),
+        }
     }
 
     #[test]
@@ -66,7 +74,15 @@ mod tests {
         assert!(output.to.is_empty());
         output.flush().expect("memory");
         assert_eq!(output.to, [BEGIN, b"half a frame", END].concat());
-        assert_eq!(output.sent.load(Ordering::Relaxed), output.to.len());
+        assert_eq!(output.meter.take().bytes, output.to.len());
+    }
+
+    #[test]
+    fn a_frame_on_a_slow_line_is_shown_while_it_arrives() {
+        let mut output = output();
+        output.meter.set_slow(true);
+        output.write_all(b"a frame").and_then(|()| output.flush()).expect("memory");
+        assert_eq!(output.to, b"a frame");
     }
 
     #[test]

@@ -99,6 +99,11 @@ pub(crate) fn demand(met: bool, otherwise: &str) -> Result<(), String> {
     if met { Ok(()) } else { Err(otherwise.to_owned()) }
 }
 
+/// Why there is no result.
+pub(crate) fn no_result(model: &Model) -> &'static str {
+    if model.live.is_replay() { "this run had not ended when it was loaded" } else { "no run has ended yet" }
+}
+
 /// Checks that a screen is shown.
 pub(crate) fn on_screen(model: &Model, screen: Screen) -> Result<(), String> {
     demand(model.ui.screen == screen, &format!("only on screen {} ({})", screen.digit(), screen.name()))

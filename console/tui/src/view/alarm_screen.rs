@@ -69,8 +69,19 @@ fn quiet(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     if needed > 0 {
         watched::draw(look, frame, limits);
     }
+    // On a wide screen without room for curves beside the lists, they take the rows that the warnings do not need.
+    let spare = match arrangement {
+        Arrangement::Wide if right.width == 0 => warnings.height.saturating_sub(before::warning_rows(look)),
+        _ => 0,
+    };
+    let spare = if spare < watched::LEAST_CURVE { 0 } else { spare };
+    let [warnings, curves] =
+        Layout::vertical([Constraint::Fill(1), Constraint::Length(spare)]).areas(warnings);
     if warnings.height > 0 {
         before::warnings(look, frame, warnings);
+    }
+    if curves.height > 0 {
+        watched::curves_in_a_row(look, frame, curves);
     }
     if right.width > 0 {
         watched::curves(look, frame, right);
@@ -134,8 +145,10 @@ fn paged(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
     let mut lines = detail::cause(look, alarm, columns, PAGED_CAUSE);
     lines.extend(actions::briefly(look, alarm, columns));
     let title = detail::title(look, alarm);
-    let keys = look.keys("<accept> actions  <next-pane> pane");
-    fill(frame, below, look.pane(Pane::Detail, &title, &keys), lines);
+    // The frame takes eight columns beside the title and the keys.
+    let room = usize::from(below.width).saturating_sub(text::width(&title) + 8);
+    let keys = ["<accept> actions  <next-pane> pane", "<accept> actions", ""].map(|keys| look.keys(keys));
+    fill(frame, below, look.pane(Pane::Detail, &title, &text::wording(keys, room)), lines);
 }
 
 /// Whether the screen itself shows the actions, so that no overlay is needed.

@@ -33,9 +33,21 @@ const PLAIN: &[(&str, char)] = &[
 
 /// Replaces every character outside ASCII; a question mark where there is no better replacement.
 pub(super) fn reduce(buffer: &mut Buffer) {
+    lengthen_ellipses(buffer);
     for cell in &mut buffer.content {
         if !cell.symbol().is_ascii() {
             cell.set_char(plain(cell.symbol()));
+        }
+    }
+}
+
+/// Writes an ellipsis as two full stops where there is room: one would look like the end of a sentence.
+fn lengthen_ellipses(buffer: &mut Buffer) {
+    let width = usize::from(buffer.area.width);
+    for next in (1..buffer.content.len()).filter(|next| next % width.max(1) != 0) {
+        if buffer.content[next - 1].symbol() == "…" && buffer.content[next].symbol() == " " {
+            let style = buffer.content[next - 1].style();
+            buffer.content[next].set_char('.').set_style(style);
         }
     }
 }

@@ -316,8 +316,10 @@ pub(super) fn promised(model: &Model) -> String {
     if model.live.run.is_survey() {
         return "a survey, which chooses its ways itself; time not known".into();
     }
-    let time =
-        model.live.estimate().map_or_else(|| "time unknown".to_owned(), |estimate| clock(estimate.time_s));
+    let time = model
+        .live
+        .estimate()
+        .map_or_else(|| "time not known yet".to_owned(), |estimate| clock(estimate.time_s));
     let length = match &model.live.run.planning.plan {
         Some(plan) if plan.path.is_empty() => "step by step, no path planned".to_owned(),
         Some(plan) => format!("{} m, {time}", text::number(plan.length_m, 1)),

@@ -178,9 +178,16 @@ fn place(model: &Model, action: &Action) -> u8 {
         ActionId::Hold if model.live.may_move() => 0,
         // The help and the command list do not show the effect of Enter.
         ActionId::Accept if !is_over => 1,
+        // A different planner is the way on if this plan cannot be started.
+        ActionId::ChoosePlanner if !is_over && leads_on(model) => 1,
         id if !is_over && model.ui.screen.row().first == id => 1,
         _ => 2,
     }
+}
+
+/// Whether the plan screen shows a plan that cannot be started.
+fn leads_on(model: &Model) -> bool {
+    model.ui.screen == Screen::Plan && model.live.waits() && model.start_is_blocked().is_some()
 }
 
 fn shown(action: &Action, contexts: &[Context], model: &Model) -> bool {

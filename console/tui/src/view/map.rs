@@ -95,16 +95,45 @@ fn critical<'a>(look: &Look<'a>) -> Option<&'a str> {
 /// Draws the floor with its legend in one place: where the map is blank beside the floor or, if it does not fit there, in
 /// lines below the floor, which is then drawn smaller.
 fn floor_and_legend(look: &Look, frame: &mut Frame, area: Rect) {
-    let Some(window) = window(look, area) else { return };
-    let placed = legend::Placed::new(look, window, legend::entries(look, window));
-    let rows = legend::rows(&placed.below, area);
+    let Some((window, placed, rows)) = settled(look, area) else { return };
     let [floor, lines] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(area);
-    let Some(window) = self::window(look, floor) else { return };
     draw_floor(look, frame, floor, window);
     legend::draw(look, frame, floor, &placed);
     let below = legend::fitting(look, &placed.below, (rows, usize::from(lines.width)));
     legend::draw_lines(look, frame, lines, &below);
     look.cache.borrow_mut().place_map(floor, window);
+}
+
+/// The part of the floor that is drawn, its legend, and the number of lines of the legend below the floor.
+fn settled(look: &Look, area: Rect) -> Option<(Window, legend::Placed, u16)> {
+    let ((window, placed), rows) = with_legend(area, |floor, is_whole| {
+        let window = window(look, floor)?;
+        let entries = legend::entries(look, window);
+        let placed = if is_whole {
+            legend::Placed::new(look, window, entries)
+        } else {
+            legend::Placed::below(entries)
+        };
+        let needed = legend::rows(&placed.below, area);
+        Some(((window, placed), needed))
+    })?;
+    Some((window, placed, rows))
+}
+
+/// Shrinks a map until its legend fits in lines below it. A smaller map can need a longer legend, because it shows fewer
+/// lanes, so the legend is always that of the map that is drawn. `made` makes the legend of a map in an area, which may
+/// be the whole of `area`, and the number of its lines. Returns the last legend, and the number of lines kept free for
+/// it.
+pub(super) fn with_legend<L>(area: Rect, made: impl Fn(Rect, bool) -> Option<(L, u16)>) -> Option<(L, u16)> {
+    let mut rows = 0;
+    loop {
+        let (legend, needed) = made(Rect { height: area.height - rows, ..area }, rows == 0)?;
+        let needed = needed.min(area.height);
+        if needed <= rows {
+            return Some((legend, rows));
+        }
+        rows = needed;
+    }
 }
 
 /// The legend of the map that has been drawn in this frame, in lines of a given width; empty without a map.

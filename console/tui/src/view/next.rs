@@ -6,7 +6,7 @@ use super::{confirm, events, home, text};
 use crate::actions::{context::contexts, find};
 use crate::guide;
 use crate::model::planning::Lead;
-use crate::model::{Alarm, Busy, Model, Offer, Overlay, Replay, Screen, ui::Ask};
+use crate::model::{Alarm, Busy, Model, Offer, Overlay, Progress, Replay, Run, Screen, ui::Ask};
 use crate::theme::Role;
 use crate::update::offered;
 use held::Head;
@@ -305,7 +305,7 @@ fn doing(model: &Model) -> Clauses {
     let Some(progress) = &run.progress else {
         return (Role::Title, vec!["Waiting for first command.".into()]);
     };
-    let done = text::percent(progress.done);
+    let done = done(run, progress);
     if let Some(survey) = &run.survey {
         let next = survey.way.as_ref().map_or("looking for a way", |way| way.to.words());
         let explored = survey.share.map_or_else(|| "-".into(), text::percent);
@@ -320,9 +320,20 @@ fn doing(model: &Model) -> Clauses {
             Lead::ToLane => "Driving to the first lane of the plan",
         };
         let left = format!("{why}: {} m left.", text::number(left_m, 1));
-        return (Role::Title, vec![left, format!("Path {done} % done.")]);
+        return (Role::Title, vec![left, format!("{}.", text::capitalized(&done))]);
     }
-    (Role::Title, vec![format!("Next target: {}; path {done} % done.", text::place(progress.target))])
+    (Role::Title, vec![format!("Next target: {}; {done}.", text::place(progress.target))])
+}
+
+/// How much of the path has been driven. A plan that was made on the way begins at 0 %, so the scanned floor is beside it.
+fn done(run: &Run, progress: &Progress) -> String {
+    let done = text::percent(progress.done);
+    let is_new = run.planning.plan.as_ref().is_some_and(|plan| plan.driven_m > 0.0);
+    if is_new && run.covers() {
+        let floor = text::percent(progress.covered_reachable);
+        return format!("path {done} % of the new plan, floor {floor} %");
+    }
+    format!("path {done} % done")
 }
 
 /// The drive back to the anchor or the start.
@@ -365,6 +376,6 @@ mod tests {
             ["DONE: back at the start, 26.8 % of the floor scanned.", "p: replan."].map(str::to_owned);
         assert_eq!(joined(&clauses, 40), "DONE: back at the start. p: replan.");
         assert_eq!(joined(&clauses, 24), "DONE: back at the start.");
-        assert_eq!(joined(&clauses, 23), "DONE: back at the sta…");
+        assert_eq!(joined(&clauses, 23), "DONE: back at the…");
     }
 }

@@ -4,7 +4,7 @@ use super::look::{Look, Parts, fill, marked, ranked};
 use super::text;
 use crate::model::{Pane, Run, history::SLOT_S};
 use crate::theme::Role;
-use positioning::{Exclusion, Integrity};
+use positioning::{Exclusion, Integrity, Residual};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -206,13 +206,25 @@ fn station_lines(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>>
         };
         let rejected = fix.excluded.iter().map(|(id, why)| word(Role::Watch, rejected(look.run, *id, why)));
         words.extend(rejected);
-        // A figure of an earlier fix does not say that the station is heard now.
-        let ok = if age.is_some() { "" } else { "ok " };
-        words.extend(fix.residuals.iter().map(|residual| {
+        // A station that contradicts the others comes before those that agree.
+        let (beyond, within): (Vec<_>, Vec<_>) =
+            fix.residuals.iter().partition(|residual| residual.is_beyond());
+        words.extend(beyond.into_iter().map(|residual| word(Role::Warn, beyond_limit(look.run, residual))));
+        // A figure of an earlier fix does not say that the station is heard now, and while the ranges contradict each
+        // other, no single range is known to be right.
+        let agrees = age.is_none() && look.run.position.failure.is_none() && fix.integrity == Integrity::Ok;
+        let state = if agrees {
+            "ok "
+        } else if age.is_some() {
+            ""
+        } else {
+            "used "
+        };
+        words.extend(within.into_iter().map(|residual| {
             let residual_mm = text::number(residual.residual_m * 1000.0, 0);
             let sign = if residual.residual_m >= 0.0005 { "+" } else { "" };
             let name = look.run.station_name(residual.station);
-            word(Role::Text, format!("{name} {ok}{sign}{residual_mm} mm"))
+            word(Role::Text, format!("{name} {state}{sign}{residual_mm} mm"))
         }));
     }
     let all = words.len();
@@ -242,6 +254,13 @@ fn laid_out(words: &[(Role, String)], more: usize, columns: usize) -> Vec<Parts>
     }
     lines.retain(|line| !line.is_empty());
     lines
+}
+
+/// A station that is used in the fix although its range contradicts it, with its residual and the limit.
+fn beyond_limit(run: &Run, residual: &Residual) -> String {
+    let [size, limit] = beside_limit(residual.residual_m.abs(), residual.limit_m(), 2);
+    let sign = if residual.residual_m < 0.0 { '-' } else { '+' };
+    format!("{} used, {sign}{size} m! (limit {limit})", run.station_name(residual.station))
 }
 
 /// A station that is not used in the fix, and the reason.

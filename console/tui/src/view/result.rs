@@ -34,7 +34,7 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, _: Arrangement) {
         let block = look.block(Role::Border, "Result", "");
         return fill(frame, area, block, vec![look.line([(Role::Dim, " No run has ended yet.".into())])]);
     };
-    if look.model.ui.without_scan && look.model.ui.arrangement() != Arrangement::Paged {
+    if look.model.ui.parts.without_scan && look.model.ui.arrangement() != Arrangement::Paged {
         return without_scan(look, frame, area, result);
     }
     for (pane, area) in placed(look.model, area, result) {
@@ -164,7 +164,7 @@ pub(crate) fn most_scrolled(model: &Model, pane: Pane) -> usize {
     let Some(result) = &model.live.result else { return 0 };
     let area = super::body(model, Rect::new(0, 0, model.ui.width, model.ui.height));
     let is_alone = model.ui.arrangement() == Arrangement::Paged;
-    let shown = if model.ui.without_scan && !is_alone {
+    let shown = if model.ui.parts.without_scan && !is_alone {
         Some((pane, beside_map(model, area, result).0))
     } else {
         placed(model, area, result).into_iter().find(|(other, _)| *other == pane)
@@ -221,7 +221,7 @@ fn scrolled(
 fn title(model: &Model, result: &RunResult) -> String {
     let ending =
         result.summary.outcome.map_or_else(|| "CUT OFF".into(), |outcome| outcome.word().to_uppercase());
-    let task = if model.ui.without_scan { ", not a scan" } else { "" };
+    let task = if model.ui.parts.without_scan { ", not a scan" } else { "" };
     format!("Result  {ending}{task}")
 }
 

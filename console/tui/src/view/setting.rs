@@ -5,6 +5,9 @@ use crate::model::setting::{Effect, Figures};
 use crate::model::{Model, log::clock, parameter};
 use mission::{ParamValue, Phase, PlannerChoice};
 
+/// What follows from a change before the start.
+const NEW_PLAN: &str = "The planner makes a new plan";
+
 /// The clauses of the question, the most important first. The first one contains the question and its keys; the second
 /// one is the effect that matters most. The progress of the estimate is left out on request.
 pub(super) fn clauses(model: &Model, key: &str, value: &ParamValue, has_progress: bool) -> Vec<String> {
@@ -12,14 +15,17 @@ pub(super) fn clauses(model: &Model, key: &str, value: &ParamValue, has_progress
     let change = parameter::change(planner, model.live.run.planning.choice.as_ref(), key, value);
     let default = parameter::find(planner, key)
         .map_or_else(String::new, |info| format!(" (default {})", parameter::default(&info.kind)));
-    let when = match model.live.run.phase() {
-        Phase::Running(_) => "It takes effect now.",
-        Phase::Held(_) => "No motion yet.",
-        Phase::Waiting | Phase::Ended(_) => "The planner makes a new plan.",
-    };
     let changed = model.live.with_parameter(key, value);
     let mut clauses = changed.map_or_else(Vec::new, |changed| effect(model, &changed, has_progress));
-    clauses.insert(1.min(clauses.len()), when.into());
+    let when = match model.live.run.phase() {
+        Phase::Running(_) => "It takes effect now.".into(),
+        Phase::Held(_) => "No motion yet.".into(),
+        Phase::Waiting | Phase::Ended(_) => format!("{NEW_PLAN}."),
+    };
+    // The effect on the plan already says that there will be a new one.
+    if !clauses.first().is_some_and(|first| first.starts_with(NEW_PLAN)) {
+        clauses.insert(1.min(clauses.len()), when);
+    }
     clauses.insert(0, format!("Set {change}{default}? <accept>: set, <cancel>: cancel."));
     clauses
 }
@@ -38,7 +44,7 @@ pub(super) fn effect(model: &Model, changed: &PlannerChoice, has_progress: bool)
 /// The estimated effect, as sentences; before the start, the effect on the plan. `required_m` is the clearance that the
 /// scenario requires, metres.
 fn effect_of(effect: &Effect, is_plan: bool, required_m: Option<f64>) -> Vec<String> {
-    let basis = if is_plan { "New plan" } else { "Forecast from here" };
+    let basis = if is_plan { NEW_PLAN } else { "Forecast from here" };
     match effect {
         Effect::Computing(share) => {
             let share = share.map_or_else(String::new, |share| {

@@ -2,7 +2,7 @@
 //! places.
 
 use super::look::Look;
-use super::map::{self, Pen, Shades, TRAIL, Window};
+use super::map::{self, Pen, TRAIL, Window};
 use crate::model::{Run, Together};
 use crate::theme::Role;
 use ratatui::Frame;
@@ -40,6 +40,12 @@ impl<'a> SmallMap<'a> {
         Some(Self { world, floor: Some((run, together)), trail: run.trail.points(), marks: Vec::new() })
     }
 
+    /// Width of the floor that a pass of the tool scans, metres; 0 without a run.
+    fn swath_m(&self) -> f64 {
+        let about = self.floor.and_then(|(run, _)| run.about.as_ref());
+        about.map_or(0.0, |about| about.mission.swath_m)
+    }
+
     /// The same map with a marked place.
     #[must_use]
     pub(super) fn marked(mut self, at: Point, role: Role, text: &str) -> Self {
@@ -50,23 +56,29 @@ impl<'a> SmallMap<'a> {
 
 /// Draws a small map with its legend below it; draws nothing if the area is too small for a map.
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, map: &SmallMap) {
-    let Some(window) = window(map.world, area) else { return };
-    let shades = |window| map::shades_of_run(look, map.floor?, window);
-    let legend = |shades: Shades| map::floor_legend(shades, usize::from(area.width).saturating_sub(1));
-    let legend = shades(window).map(legend).unwrap_or_default();
-    let rows = (legend.len() as u16).min(area.height / ROWS_PER_LINE);
+    if window(map.world, area).is_none() {
+        return;
+    }
+    let columns = usize::from(area.width).saturating_sub(1);
+    let settled = map::with_legend(area, |floor, _| {
+        let window = window(map.world, floor)?;
+        let shades = map.floor.and_then(|floor| map::shades_of_run(look, floor, window));
+        let legend = map::floor_legend(look, shades.clone(), !map.trail.is_empty(), columns);
+        let rows = (legend.len() as u16).min(area.height / ROWS_PER_LINE);
+        Some(((window, shades, legend), rows))
+    });
+    let Some(((window, shades, legend), rows)) = settled else { return };
     let [area, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(area);
-    let Some(window) = self::window(map.world, area) else { return };
     let pen = Pen { look: *look, window };
     let canvas = Canvas::default().marker(pen.marker()).x_bounds(window.x).y_bounds(window.y).paint(|ctx| {
         pen.no_go(ctx, map.world);
-        pen.draw(ctx, map.trail, TRAIL);
+        pen.trail(ctx, map.trail, TRAIL, map.swath_m());
         pen.solids(ctx, map.world);
         ctx.layer();
         signs(look, ctx, map);
     });
     frame.render_widget(canvas, area);
-    if let Some(shades) = shades(window) {
+    if let Some(shades) = shades {
         map::lay(look, &shades, area, frame.buffer_mut());
     }
     for (line, place) in legend.into_iter().zip(below.rows()) {

@@ -13,10 +13,10 @@ use world::{Station, StationId};
 /// The table columns: heading, width and rank; if space is short, columns with the highest rank numbers are dropped
 /// first.
 const TABLE: [(&str, usize, u8); 8] = [
-    ("station", 7, 0),
-    ("range", 8, 2),
+    ("name", 5, 0),
+    ("range", 7, 2),
     ("residual", 8, 0),
-    ("limit", 7, 3),
+    ("limit", 6, 2),
     ("spread", 7, 3),
     ("state", 8, 0),
     ("unused", 6, 1),
@@ -47,12 +47,9 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
 fn row(look: &Look, station: &Station, columns: usize) -> Parts {
     let position = &look.run.position;
     let ranged = position.ranges.iter().find(|ranging| ranging.station == station.id);
-    let range =
-        ranged.map_or_else(|| "-".into(), |ranging| format!("{} m", text::number(ranging.range_m, 2)));
+    let range = ranged.map_or_else(|| "-".into(), |ranging| metres(ranging.range_m, 2));
     let (role, residual_m, limit_m, state) = state(look, station.id);
-    let millimetres = |value: Option<f64>| {
-        value.map_or_else(|| "-".into(), |m| format!("{} mm", text::number(1000.0 * m, 0)))
-    };
+    let millimetres = |value: Option<f64>| value.map_or_else(|| "-".into(), millimetres);
     let rejected = position.rejections.get(&station.id).copied().unwrap_or(0);
     let cells = [
         station.name.clone(),
@@ -69,6 +66,16 @@ fn row(look: &Look, station: &Station, columns: usize) -> Parts {
     ];
     let (role, words) = marked(position::old_figures(look).is_some(), (role, laid_out(cells, columns)));
     vec![(role, if words.starts_with('◌') { words } else { format!(" {words}") })]
+}
+
+/// A length in metres, at most seven columns wide in any tank.
+fn metres(m: f64, decimals: usize) -> String {
+    format!("{} m", text::number(m, if m.abs() < 100.0 { decimals } else { 0 }))
+}
+
+/// A length in millimetres or, if it is long, in metres: at most six columns wide without its sign.
+fn millimetres(m: f64) -> String {
+    if m.abs() < 1.0 { format!("{} mm", text::number(1000.0 * m, 0)) } else { metres(m, 2) }
 }
 
 /// The curve of a station's residuals over the last minutes, up to its largest value.
@@ -91,14 +98,15 @@ fn laid_out(cells: [String; 8], columns: usize) -> String {
     let shown = TABLE.iter().zip(cells).filter(|((.., rank), _)| *rank <= most);
     let cells: Vec<String> = shown
         .map(|((head, width, _), cell)| match *head {
-            "station" | "state" => text::column(&cell, *width),
+            "name" | "state" => text::column(&cell, *width),
             _ => format!("{cell:>width$}"),
         })
         .collect();
     cells.join(" ")
 }
 
-/// The result of the last fix for a station: its residual and its gate, metres, and a word for the result.
+/// The result of the last fix for a station: its residual and the largest one that does not contradict the fix, metres, and
+/// a word for the result.
 fn state(look: &Look, station: StationId) -> (Role, Option<f64>, Option<f64>, &'static str) {
     let Some(fix) = &look.run.position.fix else { return (Role::Text, None, None, "-") };
     let left_out = fix.excluded.iter().find(|(excluded, _)| *excluded == station);
@@ -111,7 +119,11 @@ fn state(look: &Look, station: StationId) -> (Role, Option<f64>, Option<f64>, &'
             (Role::Watch, Some(*residual_m), Some(*gate_m), "REJECTED")
         }
         None => match fix.residuals.iter().find(|residual| residual.station == station) {
-            Some(residual) => (Role::Text, Some(residual.residual_m), None, "used"),
+            Some(residual) => {
+                let (role, word) =
+                    if residual.is_beyond() { (Role::Warn, "used!") } else { (Role::Text, "used") };
+                (role, Some(residual.residual_m), Some(residual.limit_m()), word)
+            }
             None => (Role::Dim, None, None, "-"),
         },
     }

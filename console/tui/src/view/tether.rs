@@ -3,7 +3,7 @@
 use super::look::{Look, Parts, fill, marked, ranked};
 use super::text;
 use crate::model::history::HISTORY_S;
-use crate::model::{Pane, Tether};
+use crate::model::{History, Pane, Tether};
 use crate::theme::Role;
 use mission::{
     Phase,
@@ -49,16 +49,21 @@ fn wide_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> 
     let mut lines = vec![
         row(1, "paid out", (out_role(look, tether), out)),
         row(2, "wrap", (wrap_role(look, tether), worst(look, tether, ("", room)))),
-        row(4, "total wrap", (Role::Text, total(tether))),
-        row(6, "contacts", (Role::Text, contacts(tether))),
+        row(5, "total wrap", (Role::Text, total(tether))),
+        row(8, "contacts", (Role::Text, contacts(tether))),
         row(0, "return path", home(tether)),
     ];
-    lines.push((5, trend(look, tether, columns)));
-    lines.extend(pull(look, tether, ("", room)).map(|pull| row(4, "pull needed", pull)));
-    lines.push(match tether.measured {
-        Some(measured) => row(3, "pull, slack", felt(measured)),
-        None => (8, vec![(Role::Dim, format!(" {:<12} no sensor", "pull, slack"))]),
-    });
+    lines.push((6, trend(look, tether, columns)));
+    lines.extend(pull(look, tether, ("", room)).map(|pull| row(3, "reel needs", pull)));
+    match tether.measured {
+        Some(measured) => {
+            let (label, most_n) = felt_where(look);
+            lines.push(row(3, label, felt(measured.pull_n, most_n)));
+            lines.push((7, pull_trend(tether, most_n, columns)));
+            lines.push(row(4, "slack", slack(measured)));
+        }
+        None => lines.push((9, vec![(Role::Dim, format!(" {:<12} no sensor", "pull, slack"))])),
+    }
     if look.run.has_ended() {
         lines.push(row(6, "at end", (Role::Text, still_out)));
     }
@@ -67,12 +72,21 @@ fn wide_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> 
 
 /// The curve of the length out over the last minutes, up to the length of the reel.
 fn trend(look: &Look, tether: &Tether, columns: usize) -> Parts {
-    let longest = tether.length_history_m.last(HISTORY_S).fold(0.0, f64::max);
-    let top_m = limits(look).map_or(longest, |limits| limits.reel_length_m);
-    let history_m = &tether.length_history_m;
-    let note = format!(" {}, 0-{} m", text::minutes(history_m, HISTORY_S), text::number(top_m, 0));
+    let reel_m = limits(look).map(|limits| limits.reel_length_m);
+    curve(&tether.length_history_m, reel_m, "m", columns)
+}
+
+/// The curve of the measured pull over the last minutes, up to its limit.
+fn pull_trend(tether: &Tether, most_n: Option<f64>, columns: usize) -> Parts {
+    curve(&tether.pull_history_n, most_n, "N", columns)
+}
+
+/// The curve of a figure over the last minutes, up to its limit or, without one, to its largest value.
+fn curve(history: &History, limit: Option<f64>, unit: &str, columns: usize) -> Parts {
+    let top = limit.unwrap_or_else(|| history.last(HISTORY_S).fold(0.0, f64::max));
+    let note = format!(" {}, 0-{} {unit}", text::minutes(history, HISTORY_S), text::number(top, 0));
     let room = columns.saturating_sub(text::width(&note) + 2);
-    let curve = text::sparkline(history_m, HISTORY_S, top_m, room);
+    let curve = text::sparkline(history, HISTORY_S, top, room);
     vec![(Role::Watch, format!(" {curve}")), (Role::Dim, note)]
 }
 
@@ -84,12 +98,15 @@ fn narrow_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)
     let room = columns.saturating_sub(2);
     let (out, reel) = (metres(tether.length_m), reel(look));
     let out = [format!("{out} of {reel} m out"), format!("{out} of {reel} m")];
-    let pull = pull(look, tether, ("pull ", room)).map(|pull| row(3, "", pull));
-    let felt = tether.measured.map(|measured| row(3, "pull, slack ", felt(measured)));
+    let pull = pull(look, tether, ("reel needs ", room)).map(|pull| row(4, "", pull));
+    let felt = tether.measured.into_iter().flat_map(|measured| {
+        let (label, most_n) = felt_where(look);
+        [row(3, &format!("{label} "), felt(measured.pull_n, most_n)), row(5, "slack ", slack(measured))]
+    });
     [
         row(1, "", (out_role(look, tether), metered(out_share(look, tether), out, room))),
         row(2, "", (wrap_role(look, tether), worst(look, tether, ("wrap ", room)))),
-        row(4, "total ", (Role::Text, total(tether))),
+        row(6, "total ", (Role::Text, total(tether))),
     ]
     .into_iter()
     .chain(pull)
@@ -165,7 +182,7 @@ fn total(tether: &Tether) -> String {
 
 /// The pull at the reel that taking up the tether needs, after a label; `None` if the scenario does not describe the reel.
 fn pull(look: &Look, tether: &Tether, (label, room): (&str, usize)) -> Option<(Role, String)> {
-    let reel = look.run.about.as_ref()?.mission.tether.as_ref()?.reel?;
+    let reel = look.run.reel()?;
     let pull_n = tether.pull_n?;
     let share = pull_n / reel.pull_n;
     let role = match share {
@@ -174,15 +191,35 @@ fn pull(look: &Look, tether: &Tether, (label, room): (&str, usize)) -> Option<(R
         _ => Role::Text,
     };
     let [now, most] = [pull_n, reel.pull_n].map(|newtons| text::number(newtons, 1));
-    let words = [format!("{label}{now} N, reel pulls {most} N"), format!("{label}{now} of {most} N")];
-    Some((role, metered(share, words, room)))
+    let words = format!("{label}{now} of {most} N");
+    Some((role, metered(share, [words.clone(), words], room)))
 }
 
-/// The measured pull, and the slack beside its limit.
-fn felt(MeasuredPull { pull_n, slack_m }: MeasuredPull) -> (Role, String) {
-    let [slack, limit] = world::beside_limit(slack_m, SLACK_M, 2);
-    let words = format!("{} N, {slack} of {limit} m", text::number(pull_n, 1));
-    (beside_limit(slack_m / SLACK_M), words)
+/// Where the pull is measured, and its largest permitted value there, newtons. A simulated robot feels the tether; a real
+/// vehicle reports the pull at its reel.
+fn felt_where(look: &Look) -> (&'static str, Option<f64>) {
+    if look.run.is_live() {
+        ("reel now", look.run.reel().map(|reel| reel.pull_n))
+    } else {
+        ("robot pull", look.run.robot_pull_most_n())
+    }
+}
+
+/// The measured pull beside its limit.
+fn felt(pull_n: f64, most_n: Option<f64>) -> (Role, String) {
+    match most_n {
+        Some(most_n) => {
+            let [now, most] = world::beside_limit(pull_n, most_n, 1);
+            (beside_limit(pull_n / most_n), format!("{now} of {most} N"))
+        }
+        None => (Role::Text, format!("{} N (no limit given)", text::number(pull_n, 1))),
+    }
+}
+
+/// The slack beside its limit.
+fn slack(measured: MeasuredPull) -> (Role, String) {
+    let [slack, limit] = world::beside_limit(measured.slack_m, SLACK_M, 2);
+    (beside_limit(measured.slack_m / SLACK_M), format!("{slack} of {limit} m"))
 }
 
 fn contacts(tether: &Tether) -> String {

@@ -68,14 +68,19 @@ pub(crate) fn degrees(heading_rad: f64) -> String {
     number(if degrees >= 360.0 { 0.0 } else { degrees }, 0)
 }
 
-/// Text cut to a width; an ellipsis replaces the rest.
+/// Text cut to a width; an ellipsis replaces the rest. The cut is between two words, because half a word or half a figure
+/// misleads; a word that takes more than half of the width is cut inside.
 pub(crate) fn fit(text: &str, columns: usize) -> String {
     if width(text) <= columns {
         return text.to_owned();
     }
     let mut cut = String::new();
-    for letter in text.chars() {
+    let mut letters = text.chars();
+    for letter in letters.by_ref() {
         if width(&cut) + width(letter.encode_utf8(&mut [0; 4])) >= columns {
+            if letter != ' ' {
+                cut.truncate(whole_words(&cut, columns));
+            }
             break;
         }
         cut.push(letter);
@@ -84,6 +89,14 @@ pub(crate) fn fit(text: &str, columns: usize) -> String {
         cut.push('…');
     }
     cut
+}
+
+/// The length of a text, bytes, without its last, incomplete word and the marks before it; the whole length if little
+/// would remain.
+fn whole_words(text: &str, columns: usize) -> usize {
+    let words = text.rsplit_once(' ').map_or(text, |(words, _)| words);
+    let words = words.trim_end_matches([' ', ',', ';', ':', '(', '-']);
+    if 2 * width(words) >= columns { words.len() } else { text.len() }
 }
 
 /// The first wording that fits, in order from longest to shortest; the last one if none fits.
@@ -271,6 +284,15 @@ mod tests {
     }
 
     #[test]
+    fn a_cut_is_between_words_unless_little_would_remain() {
+        let action = "Exclude station C (largest residual, +1.75 m)";
+        assert_eq!(fit(action, 42), "Exclude station C (largest residual…");
+        assert_eq!(fit(action, 20), "Exclude station C…");
+        assert_eq!(fit("a 20261130T002200Z-cover-circle", 20), "a 20261130T002200Z-…");
+        assert_eq!(fit(action, 45), action);
+    }
+
+    #[test]
     fn a_sentence_loses_whole_clauses_and_a_list_whole_names() {
         let sentence = "12 MB free, 91 MB needed; delete runs";
         let at = |columns| clauses(sentence, columns);
@@ -285,8 +307,8 @@ mod tests {
             clauses("plan: shell: along 0.4 m of it, the scan is wider", 32),
             "plan: shell: along 0.4 m of it"
         );
-        assert_eq!(clauses("plan: shell: along 0.4 m of it", 20), "plan: shell: along …");
-        assert_eq!(clauses("Go on? Enter: change, Esc: cancel", 30), "Go on? Enter: change, Esc: ca…");
+        assert_eq!(clauses("plan: shell: along 0.4 m of it", 20), "plan: shell: along…");
+        assert_eq!(clauses("Go on? Enter: change, Esc: cancel", 30), "Go on? Enter: change, Esc…");
         let at = |columns| names(&["apf", "rpf", "navfn"], columns);
         assert_eq!([at(13), at(12), at(6), at(1)], ["apf rpf navfn", "apf rpf +1", "apf +2", "3"]);
     }
@@ -322,7 +344,7 @@ mod tests {
     fn items_are_not_divided_between_lines() {
         let items = ["a 1", "bb 22", "c 3"].map(str::to_owned);
         assert_eq!(wrap_items(&items, 11, "  "), ["a 1  bb 22", "c 3"]);
-        assert_eq!(wrap_items(&items, 4, "  "), ["a 1", "bb …", "c 3"]);
+        assert_eq!(wrap_items(&items, 4, "  "), ["a 1", "bb…", "c 3"]);
     }
 
     #[test]

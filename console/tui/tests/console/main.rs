@@ -16,6 +16,8 @@ mod frame;
 mod handover;
 mod held_keys;
 mod laws;
+mod legends;
+mod limits;
 mod look_only;
 mod maps;
 mod mouse;

@@ -215,12 +215,17 @@ fn nothing_on_either_screen_is_cut() {
     }
 }
 
-/// A plan whose lanes are closer than the columns of the map, and beside it the plan of a different planner.
+/// A plan whose lanes are closer than the columns of the map.
 fn dense() -> Screen {
+    of_lanes(0.5, 37)
+}
+
+/// The plan screen with a plan of `n` lanes at a distance from each other, metres.
+pub(crate) fn of_lanes(lane_m: f64, n: u32) -> Screen {
     let mut screen = Screen::idle();
-    let (path, legs) = lanes_every(0.5, 37);
+    let (path, legs) = lanes_every(lane_m, n);
     if let Some(about) = &mut screen.model.live.run.about {
-        (about.mission.swath_m, about.mission.scan.overlap_m) = (0.6, 0.1);
+        (about.mission.swath_m, about.mission.scan.overlap_m) = (lane_m + 0.1, 0.1);
     }
     let ask = Some(AskId { worker: WorkerId(0), n: 2 });
     let length_m = world::polyline::length_m(&path);

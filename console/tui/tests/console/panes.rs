@@ -348,7 +348,7 @@ fn the_pull_the_slack_and_the_loops_of_a_tether_are_shown() {
     for size in [(200, 60), (120, 36)] {
         screen.send(Msg::Resize { width: size.0, height: size.1 });
         let shown = text(&drawn(&screen.model, RICH, size));
-        for words in ["3.4 N, 0.16 of 0.20 m", "tether, true"] {
+        for words in ["3.4 N (no limit given)", "0.16 of 0.20 m", "tether, true"] {
             assert!(shown.contains(words), "{size:?} {words}:\n{shown}");
         }
     }

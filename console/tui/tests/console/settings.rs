@@ -93,7 +93,8 @@ fn before_the_start_the_plan_with_the_value_is_compared_first() {
     let length = format!("path {:.1} m", made.estimate.length_m);
     screen.hear(RunMsg::Compared(with, Ok(Box::new(made))));
     assert!(
-        shown(&screen).contains("New plan: clearance ") && shown(&screen).contains("Time 00:"),
+        shown(&screen).contains("The planner makes a new plan: clearance ")
+            && shown(&screen).contains("Time 00:"),
         "{}",
         shown(&screen)
     );

@@ -239,7 +239,7 @@ impl Alarm {
     pub fn cannot_be_shelved(&self) -> Option<&'static str> {
         match self.state {
             State::Returned => Some("cleared alarms are acknowledged (<acknowledge>), not shelved"),
-            State::Cleared => Some("the alarm has cleared"),
+            State::Cleared => Some("not shelved: the alarm has cleared"),
             _ if self.severity == Severity::Crit => Some("a CRIT alarm cannot be shelved"),
             _ => None,
         }

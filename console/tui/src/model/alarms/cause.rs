@@ -175,7 +175,17 @@ impl Cause {
     /// Each cause once, for tests that go through all of them.
     #[doc(hidden)]
     pub fn every() -> Vec<Self> {
-        let tether = ["reel", "wrap", "total wrap", "snag", "return path", "stray", "slack"];
+        let tether = [
+            "reel",
+            "wrap",
+            "total wrap",
+            "snag",
+            "return path",
+            "stray",
+            "slack",
+            "reel pull",
+            "robot pull",
+        ];
         let all: Vec<Self> = [
             Self::PositionLost,
             Self::Contradiction,

@@ -90,15 +90,16 @@ pub fn rule(cause: &Cause, severity: Severity, context: Context) -> Rule {
             at_once(Severity::Warn)
         }
         // A tether that is only near a limit needs no action at once; one that is at its limit holds the robot.
-        (Cause::Tether(word), _) if is_length_or_wrap(word) && severity < Severity::Crit => {
+        (Cause::Tether(word), _) if has_own_limit(word) && severity < Severity::Crit => {
             rule(Severity::Warn, CYCLE_S, TURN_S)
         }
         _ => at_once(Severity::Crit),
     }
 }
 
-fn is_length_or_wrap(word: &str) -> bool {
-    matches!(word, "reel" | "wrap" | "total wrap")
+/// Whether a tether alarm is about a figure that can go to and fro at its limit: a length, a wrap or a pull.
+fn has_own_limit(word: &str) -> bool {
+    matches!(word, "reel" | "wrap" | "total wrap" | "reel pull" | "robot pull")
 }
 
 /// What sag, stretch and position errors may add to the tether that a plan promises: metres, and a share of its length.

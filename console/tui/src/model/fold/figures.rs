@@ -79,6 +79,7 @@ impl Run {
         };
         let (out_m, total_rad, promised_m) = (tether.length_m, tether.wrap_total_rad, tether.promised_m);
         let limits = config.limits;
+        let pulls: Vec<_> = self.pulls(tether).collect();
         let reel = TetherAlarm::Reel { out_m, reel_length_m: limits.reel_length_m };
         let total = TetherAlarm::WrapTotal { sum_rad: total_rad, limit_rad: limits.wrap_total_max_rad };
         let slack =
@@ -87,6 +88,11 @@ impl Run {
             let cause = Cause::Tether(alarm.word().to_owned());
             let reached = self.alarms.get(&cause).is_some_and(|alarm| alarm.severity == Severity::Crit);
             self.read(&cause, || of_tether(&alarm, reached, promised_m).unwrap_or_default());
+        }
+        for pull in pulls {
+            let [now, limit] = beside_limit(pull.now_n, pull.most_n, 1).map(|newtons| format!("{newtons} N"));
+            let numbers = Some((pull.now_n, Some(pull.most_n)));
+            self.read(&Cause::Tether(pull.word.to_owned()), || Reading { now, limit, numbers });
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::model::Run;
 use crate::model::log::{Entry, Occurrence, Robot, What, slim};
-use mission::{Event, EventKind, Severity};
+use mission::{Event, EventKind, Severity, event::TetherAlarm};
 use positioning::Ranging;
 
 impl Run {
@@ -12,6 +12,13 @@ impl Run {
         // A planner says the same about the floor after each replan; once is enough.
         if matches!(event.kind, EventKind::PlannerLogged { .. }) && self.planning.has_said(&line.text) {
             line.severity = Severity::Debug;
+        }
+        // A certified plan may use the reel; only more than it promises is an alarm.
+        if let EventKind::TetherAlarmRaised { alarm, reached: false } = &event.kind
+            && let TetherAlarm::Reel { out_m, .. } = alarm
+            && self.reel_limit_m().is_some_and(|limit_m| *out_m <= limit_m)
+        {
+            (line.severity, line.text) = (Severity::Info, format!("as planned: {alarm}"));
         }
         self.log.push(Entry {
             tick: event.tick,

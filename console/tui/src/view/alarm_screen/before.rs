@@ -11,6 +11,8 @@ use ratatui::layout::Rect;
 
 /// The number of log lines among which the last warnings are looked for in each frame.
 const LOOKED_AT: usize = 5000;
+/// The number of last warnings that are shown where other figures need the room.
+const MOST: usize = 6;
 
 /// The log lines up to the last event of an alarm, newest first: what led to the alarm.
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
@@ -22,12 +24,20 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
 }
 
 /// The last log lines of WATCH and above, newest first.
-pub(super) fn warnings(look: &Look, frame: &mut Frame, area: Rect) {
+fn last_warnings<'a>(look: &Look<'a>) -> impl Iterator<Item = &'a Entry> {
     let log = &look.run.log;
     let numbers = (log.oldest()..log.end()).rev().take(LOOKED_AT);
-    let shown = numbers.filter_map(|number| log.get(number));
-    let shown = shown.filter(|entry| entry.severity >= Severity::Watch);
-    list(look, frame, area, "Last warnings", shown);
+    numbers.filter_map(|number| log.get(number)).filter(|entry| entry.severity >= Severity::Watch)
+}
+
+/// Draws the last warnings.
+pub(super) fn warnings(look: &Look, frame: &mut Frame, area: Rect) {
+    list(look, frame, area, "Last warnings", last_warnings(look));
+}
+
+/// The rows that the last warnings need, including the frame: at most those for [`MOST`] of them.
+pub(super) fn warning_rows(look: &Look) -> u16 {
+    last_warnings(look).take(MOST).count().max(1) as u16 + 2
 }
 
 fn list<'a>(

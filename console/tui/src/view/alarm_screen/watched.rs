@@ -16,6 +16,10 @@ const VALUE: usize = 18;
 const LIMIT: usize = 14;
 /// Rows of a curve, including the frame.
 const CURVE: u16 = 10;
+/// The fewest rows of a curve, including the frame.
+pub(super) const LEAST_CURVE: u16 = 7;
+/// The width that a curve needs beside others, columns.
+const CURVE_COLUMNS: u16 = 38;
 
 /// The rows that the limits need, including the frame and the headings.
 pub(super) fn rows(look: &Look) -> u16 {
@@ -56,12 +60,30 @@ fn row(label: &str, now: &str, limit: &str, role: Role) -> Parts {
     ]
 }
 
+/// The charts of the figures that this mission has.
+fn figures_charted(look: &Look) -> impl Iterator<Item = Chart> + use<> {
+    let tether = look.run.tether.is_some();
+    let all = [Chart::Error, Chart::Residual, Chart::TetherOut, Chart::Wrap];
+    all.into_iter().filter(move |chart| tether || matches!(chart, Chart::Error | Chart::Residual))
+}
+
+/// The curves beside each other, as many as fit, and the robot in the tank.
+pub(super) fn curves_in_a_row(look: &Look, frame: &mut Frame, area: Rect) {
+    let shown: Vec<Chart> =
+        figures_charted(look).take(usize::from(area.width / CURVE_COLUMNS).saturating_sub(1)).collect();
+    let columns = Layout::horizontal(vec![Constraint::Fill(1); shown.len() + 1]).split(area);
+    for (chart, area) in shown.iter().zip(columns.iter()) {
+        charts::draw(look, frame, *area, *chart);
+    }
+    if let Some(area) = columns.last() {
+        super::draw_place(look, frame, *area, None);
+    }
+}
+
 /// The curves of the figures with their limits, and the robot in the tank.
 pub(super) fn curves(look: &Look, frame: &mut Frame, area: Rect) {
-    let tether = look.run.tether.is_some();
-    let shown = [Chart::Error, Chart::Residual, Chart::TetherOut, Chart::Wrap];
-    let shown = shown.into_iter().filter(|chart| tether || matches!(chart, Chart::Error | Chart::Residual));
-    let shown: Vec<Chart> = shown.take(usize::from(area.height / CURVE).saturating_sub(1)).collect();
+    let shown: Vec<Chart> =
+        figures_charted(look).take(usize::from(area.height / CURVE).saturating_sub(1)).collect();
     let rows = Layout::vertical(shown.iter().map(|_| Constraint::Length(CURVE)).chain([Constraint::Fill(1)]))
         .split(area);
     for (chart, area) in shown.iter().zip(rows.iter()) {

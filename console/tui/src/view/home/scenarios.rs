@@ -101,8 +101,12 @@ fn row(look: &Look, entry: &ScenarioEntry, at: Columns, room: usize) -> Parts {
         return vec![name, (Role::Warn, text::clauses(&format!("INVALID  {why}"), left))];
     }
     let last = look.model.home.last_end(&entry.name);
-    let reach =
-        last.and_then(|run| run.reachable).map_or_else(|| "-".into(), |s| format!("{} %", text::percent(s)));
+    // A mission that does not scan passes over floor, but that is not its result.
+    let scans = entry.task == "cover";
+    let reach = last
+        .and_then(|run| run.reachable)
+        .filter(|_| scans)
+        .map_or_else(|| "-".into(), |s| format!("{} %", text::percent(s)));
     let (role, end) = end(look, entry, last);
     vec![
         name,

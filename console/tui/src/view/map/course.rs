@@ -11,6 +11,8 @@ use world::Point;
 
 /// All passes of the trail are drawn if a pass of the tool is at least this many columns wide.
 const PASS_COLUMNS: f64 = 2.0;
+/// The same without colours: the floor is visible only between the passes, so most of it is left free.
+const PLAIN_PASS_COLUMNS: f64 = 6.0;
 /// How much of the trail is drawn if its passes would merge, columns.
 const REACH_COLUMNS: f64 = 20.0;
 
@@ -132,7 +134,7 @@ impl Pen<'_> {
             }
         }
         if shows_trail(&self.look) {
-            self.trail(ctx, self.look.run.trail.points(), ink::TRAIL);
+            self.trail(ctx, self.look.run.trail.points(), ink::TRAIL, self.swath_m());
         }
         if let Some(course) = course {
             let (from, to) = course.leg;
@@ -152,7 +154,7 @@ impl Pen<'_> {
         }
         let other = look.model.live.replay.as_ref().and_then(|replay| replay.other.as_ref());
         if let Some(other) = other.filter(|_| look.model.ui.screen == Screen::Mission) {
-            self.trail(ctx, other.run.trail.points(), ink::OTHER);
+            self.trail(ctx, other.run.trail.points(), ink::OTHER, self.swath_m());
         }
     }
 
@@ -165,12 +167,18 @@ impl Pen<'_> {
         }
     }
 
-    /// The newest part of a trail. Where neighbouring passes would merge on the map, only the stretch close to the
-    /// robot is drawn; the scanned cells show the rest.
-    fn trail(&self, ctx: &mut Context<'_>, points: &[Point], ink: Ink) {
-        let swath_m = self.look.run.about.as_ref().map_or(0.0, |about| about.mission.swath_m);
+    /// Width of the floor that a pass of the tool scans in the open run, metres.
+    fn swath_m(&self) -> f64 {
+        self.look.run.about.as_ref().map_or(0.0, |about| about.mission.swath_m)
+    }
+
+    /// The newest part of a trail with passes of the given width, metres. Where neighbouring passes would merge on the
+    /// map, or would hide the floor because the map has no colours, only the stretch close to the robot is drawn; the
+    /// scanned cells show the rest.
+    pub(in crate::view) fn trail(&self, ctx: &mut Context<'_>, points: &[Point], ink: Ink, swath_m: f64) {
         let newest: Vec<Point> = points.iter().rev().copied().collect();
-        let merges = swath_m < PASS_COLUMNS * self.window.column_m;
+        let least = if self.look.is_plain() { PLAIN_PASS_COLUMNS } else { PASS_COLUMNS };
+        let merges = swath_m < least * self.window.column_m;
         let reach_m = REACH_COLUMNS * self.window.column_m;
         self.draw(ctx, if merges { within(&newest, reach_m) } else { &newest }, ink);
     }

@@ -11,7 +11,7 @@ use crate::model::{Overlay, Screen, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
 use crate::view::{missed, text};
-use account::Estimate;
+use account::{Area, Estimate, MissReason};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
@@ -26,6 +26,17 @@ const NAME: usize = 4;
 const LANE_COLUMNS: f64 = 8.0;
 /// The distance between the arrows of a path without lanes, columns.
 const ARROW_COLUMNS: f64 = 30.0;
+
+/// The missed areas that are numbered on the map.
+pub(super) fn numbered<'a>(look: &Look<'a>) -> Vec<&'a Area<MissReason>> {
+    let ui = &look.model.ui;
+    let most = match ui.map.zoom {
+        _ if ui.screen != Screen::Result => 0,
+        0 => MISSED.0,
+        _ => MISSED.1,
+    };
+    look.model.live.missed().into_iter().take(most).collect()
+}
 
 /// The mark of the place at which a re-scan resumes.
 pub(super) const RESUMES: &str = "R";
@@ -154,13 +165,10 @@ impl Board<'_, '_> {
     }
 
     fn missed(&mut self) {
-        let (model, ui) = (self.look.model, &self.look.model.ui);
-        if ui.screen == Screen::Result {
-            let most = if ui.map.zoom > 0 { MISSED.1 } else { MISSED.0 };
-            for (index, area) in model.live.missed().iter().enumerate().take(most) {
-                let role = if index == ui.missed { Role::Selected } else { missed::role(area) };
-                self.always(area.at, role, &(index + 1).to_string());
-            }
+        for (index, area) in numbered(&self.look).iter().enumerate() {
+            let is_selected = index == self.look.model.ui.missed;
+            let role = if is_selected { Role::Selected } else { missed::role(area) };
+            self.always(area.at, role, &(index + 1).to_string());
         }
     }
 

@@ -3,6 +3,7 @@
 mod lines;
 mod marks;
 
+use super::ink;
 use super::shade::{self, Shade, Shades};
 use super::shapes::Window;
 use crate::theme::Role;
@@ -67,6 +68,11 @@ impl Placed {
                 };
             }
         }
+        Self::below(entries)
+    }
+
+    /// Places all entries in lines below the floor.
+    pub(super) fn below(entries: Vec<Entry>) -> Self {
         Self { beside: Vec::new(), below: entries }
     }
 }
@@ -128,9 +134,16 @@ pub(super) fn in_lines(look: &Look, window: Window, columns: usize) -> Vec<Parts
     lines(&entries(look, window), columns).into_iter().map(line_parts).collect()
 }
 
-/// The legend of shades, in lines of a given width.
-pub(in crate::view) fn of_floor(shades: Shades, columns: usize) -> Vec<Parts> {
-    let entries: Vec<Entry> = shade::occurring(shades).map(of_shade).collect();
+/// The legend of a small map, in lines of a given width: the shades of its floor, and the trail if it is drawn.
+pub(in crate::view) fn of_floor(
+    look: &Look,
+    shades: Option<Shades>,
+    has_trail: bool,
+    columns: usize,
+) -> Vec<Parts> {
+    let floor = shades.into_iter().flat_map(shade::occurring).map(of_shade);
+    let trail = has_trail.then(|| lines::entry(look, ink::TRAIL, "trail"));
+    let entries: Vec<Entry> = floor.chain(trail).collect();
     lines(&entries, columns).into_iter().map(line_parts).collect()
 }
 
@@ -195,7 +208,7 @@ mod tests {
     use super::lines::{LINES, RUN_B, mark};
     use super::*;
     use crate::view::ascii;
-    use crate::view::map::{drawn, ink, labels};
+    use crate::view::map::{drawn, labels};
     use world::Point;
 
     #[test]

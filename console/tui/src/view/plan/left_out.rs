@@ -95,11 +95,11 @@ fn reason(reason: MissReason, causes: &[Cause<MissReason>]) -> [String; 3] {
     let words: [&str; 3] = match reason {
         MissReason::NotPlanned => return beside_lanes(measure),
         MissReason::Clearance => {
-            ["too little room for hull and clearance", "no room for hull and clearance", "clearance"]
+            ["too little room for hull and clearance", "no room for hull and clearance", "no room for hull"]
         }
         MissReason::Wrap => ["a lane here would wind the tether", "would wind the tether", "tether"],
         MissReason::BeyondReel => ["beyond the reach of the tether", "beyond the tether", "beyond tether"],
-        MissReason::Narrow => ["outside the outermost lane", "outside the outermost lane", "outside lanes"],
+        MissReason::Narrow => ["outside the outermost lane", "outside the outermost lane", "outer lane"],
         reason => [reason.plainly(), reason.briefly(), reason.briefly()],
     };
     words.map(str::to_owned)

@@ -49,7 +49,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     for figure in FIGURES.into_iter().filter(has) {
         let mut mine = cell(figure, estimate, (Role::Text, widths.first));
         let lanes = look.model.live.plans.lanes;
-        if figure.label == "path" && lanes > 0 {
+        // While a plan is being made, the lanes are those of the plan before.
+        if figure.label == "path" && lanes > 0 && estimate.is_some() {
             mine.1 = text::wording(
                 [format!("{}, {}", mine.1, text::counted(lanes, "lane")), mine.1],
                 widths.first,

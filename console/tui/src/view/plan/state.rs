@@ -60,7 +60,8 @@ fn reasons(look: &Look, columns: usize) -> Vec<String> {
 pub(super) fn in_a_line(look: &Look, columns: usize) -> (Role, String) {
     let (role, state) = progress(look);
     let certificate = certificate(look, columns).map_or_else(String::new, |(_, words)| format!(" {words}."));
-    (role, text::wording([format!("{state}{certificate}"), text::clauses(&state, columns)], columns))
+    let short = in_short(look).unwrap_or_else(|| state.clone());
+    (role, text::wording([format!("{state}{certificate}"), short, text::clauses(&state, columns)], columns))
 }
 
 fn one((role, words): (Role, String)) -> Parts {
@@ -98,9 +99,34 @@ fn progress(look: &Look) -> (Role, String) {
     }
 }
 
+/// Whether the mission has started, and whether its plan can be: a plan that is not certified is never called ready alone.
+fn readiness(look: &Look) -> &'static str {
+    let is_refused = look.run.tether.as_ref().is_some_and(|tether| tether.certified == Some(false));
+    match (*look.run.phase() == Phase::Waiting, is_refused) {
+        (true, true) => "Ready, NOT certified",
+        (true, false) => "Ready",
+        (false, true) => "Started, NOT certified",
+        (false, false) => "Started",
+    }
+}
+
+/// The state of a plan for a scan in a short line: its certificate, what it scans, and how many areas it leaves out.
+fn in_short(look: &Look) -> Option<String> {
+    look.run.planning.plan.as_ref().filter(|_| look.model.live.busy.is_none())?;
+    let left_out = look.model.live.left_out()?;
+    let is_certified = look.run.tether.as_ref().is_some_and(|tether| tether.certified == Some(true));
+    let certified = if is_certified { ", certified" } else { "" };
+    let areas = match left_out.areas.len() {
+        0 => String::new(),
+        n => format!(", {} left out", text::counted(n, "area")),
+    };
+    let scanned = text::percent(left_out.scanned());
+    Some(format!("{}{certified}: {scanned} % of requested{areas}.", readiness(look)))
+}
+
 /// How much of the task the plan achieves. The base is the floor that was requested.
 fn ready(look: &Look, is_complete: bool) -> (Role, String) {
-    let state = if *look.run.phase() == Phase::Waiting { "Ready." } else { "Started." };
+    let state = format!("{}.", readiness(look));
     let role = if is_complete { Role::Good } else { Role::Warn };
     let words = match look.model.live.left_out() {
         Some(left_out) => {
@@ -122,7 +148,8 @@ fn ready(look: &Look, is_complete: bool) -> (Role, String) {
 fn resumption(look: &Look) -> Option<String> {
     let resumption = look.model.live.left_out()?.resumption?;
     if look.model.live.scanned_before.is_some() {
-        return Some(format!("R {}", text::capitalized(&confirm::resumes(&resumption))));
+        let resumes = text::capitalized(&confirm::resumes(&resumption));
+        return Some(format!("R {resumes} Missed areas that are small or out of reach are not requested."));
     }
     let (at, again_m2) = (text::place(resumption.at), text::number(resumption.again_m2, 1));
     let after_m = text::number(resumption.after_m, 1);

@@ -14,6 +14,8 @@ use ratatui::layout::Rect;
 /// Width of the areas and shares in the table of reasons, columns.
 const AREA: usize = 12;
 const SHARE: usize = 8;
+/// The minimum width of a pane at which an area is beside the name of its plate, columns.
+const WITH_PLATE: usize = 64;
 
 /// The fewest rows of the list beside the reasons for the selected area.
 const LEAST_LISTED: usize = 3;
@@ -89,11 +91,15 @@ fn title(look: &Look, listed: &[&Area<MissReason>], full: bool) -> String {
 
 /// An area; one that was not reached because the mission ended is dim, because nothing went wrong there.
 fn row(index: usize, area: &Area<MissReason>, columns: usize) -> Parts {
-    let plate = area.plate.as_deref().unwrap_or("-");
+    // The plates have a page of their own; the reason has not.
+    let plate = if columns < WITH_PLATE {
+        String::new()
+    } else {
+        text::column(area.plate.as_deref().unwrap_or("-"), 8) + " "
+    };
     let place = format!(
-        "{:>3} {} {:>16} {:>7} m² ",
+        "{:>3} {plate}{:>16} {:>7} m² ",
         index + 1,
-        text::column(plate, 8),
         text::place(area.at),
         text::number(area.area_m2, 3)
     );

@@ -31,18 +31,18 @@ const fn column(head: &'static str, width: usize, rank: u8, cell: fn(&PlateAccou
 /// The columns after the name. The last two need the true position.
 const COLUMNS: [Column; 7] = [
     column("area", 9, 6, |plate| format!("{} m²", text::number(plate.shares.area_m2, 1))),
-    column("scanned", 10, 4, |plate| percent(plate.shares.percent.scanned)),
+    column("scanned", 8, 4, |plate| percent(plate.shares.percent.scanned)),
     Column {
         warns: |plate, _| plate.shares.percent.missed > 0.0,
-        ..column("missed", 9, 0, |plate| percent(plate.shares.percent.missed))
+        ..column("missed", 8, 0, |plate| percent(plate.shares.percent.missed))
     },
-    column("error p95", 11, 5, |plate| metres(plate.error_p95_m)),
+    column("error p95", 10, 5, |plate| metres(plate.error_p95_m)),
     Column {
         warns: |plate, limit_m| plate.error_max_m.is_some_and(|m| m > limit_m),
-        ..column("err. worst", 12, 3, |plate| metres(plate.error_max_m))
+        ..column("err. worst", 11, 3, |plate| metres(plate.error_max_m))
     },
-    column(TRUE_P95, 10, 2, |plate| metres(plate.true_error_p95_m)),
-    column(TRUE_WORST, 12, 1, |plate| metres(plate.true_error_max_m)),
+    column(TRUE_P95, 9, 2, |plate| metres(plate.true_error_p95_m)),
+    column(TRUE_WORST, 11, 1, |plate| metres(plate.true_error_max_m)),
 ];
 const TRUE_P95: &str = "true p95";
 const TRUE_WORST: &str = "true worst";

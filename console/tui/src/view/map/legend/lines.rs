@@ -63,7 +63,8 @@ pub(super) fn mark(ink: Ink, word: &str, has_dots: bool) -> String {
     }
 }
 
-fn entry(look: &Look, ink: Ink, word: &'static str) -> Entry {
+/// The entry of a kind of line.
+pub(super) fn entry(look: &Look, ink: Ink, word: &'static str) -> Entry {
     Entry { role: ink.role, mark: mark(ink, word, look.caps.glyphs.has_dots()), word: word.into() }
 }
 

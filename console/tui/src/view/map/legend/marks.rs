@@ -36,7 +36,15 @@ pub(super) fn shown(look: &Look, window: Window) -> Vec<Entry> {
     let target = run.progress.as_ref().is_some_and(|progress| !run.has_ended() && seen(progress.target));
     let wound = labels::wound(look).is_some_and(seen);
     let change_over = course::change_over(look).is_some_and(seen);
+    let numbered = labels::numbered(look).iter().filter(|area| seen(area.at)).count();
+    let numbers = match numbered {
+        0 | 1 => "1".to_owned(),
+        2..=9 => format!("1-{numbered}"),
+        _ => "1+".into(),
+    };
     let marks = [
+        // The areas may be too small for their own floor to be visible.
+        (numbered > 0, Role::Missed, numbers, "missed area"),
         (no_go, Role::NoGo, hatched, "no-go zone"),
         (frontier, Role::Watch, survey::FRONTIER.into(), "frontier"),
         (columns.is_some(), Role::Found, columns.map_or_else(String::new, survey::numbers), "column"),
