@@ -1,7 +1,7 @@
 //! The incidents of a run, for people; alarms and holds have a start and an end.
 
 use mission::{Event, EventKind, LogLine, Order, Severity};
-use positioning::Integrity;
+use positioning::{Exclusion, Integrity};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use vehicle::port::{LinkState, Notice};
@@ -160,6 +160,8 @@ fn sort(kind: &EventKind) -> Option<Sorted> {
         EventKind::Planned { .. } | EventKind::Certified { .. } | EventKind::ReturnBegan { .. } => {
             ("plan", None, None)
         }
+        // The incident about the bias says so already.
+        EventKind::StationRejected { reason: Exclusion::Biased { .. }, .. } => return None,
         EventKind::StationRejected { station, .. } => {
             ("station", key(&format!("station {}", station.0)), None)
         }
