@@ -242,7 +242,9 @@ fn pulse_records(
         let mut found = pulse_text(*phase, test, stations);
         if test.is_usable() {
             let change = before.replace(test.clone()).and_then(|before| change_text(&before, test));
-            change.into_iter().for_each(|change| found = format!("{found}; {change}"));
+            if let Some(change) = change {
+                found = format!("{found}; {change}");
+            }
         }
         PulseRecord { found, agrees: matches!(test.integrity, Integrity::Ok | Integrity::Suspect) }
     };

@@ -160,15 +160,15 @@ fn sort(kind: &EventKind) -> Option<Sorted> {
         EventKind::Planned { .. } | EventKind::Certified { .. } | EventKind::ReturnBegan { .. } => {
             ("plan", None, None)
         }
-        // The incident about the bias says so already.
-        EventKind::StationRejected { reason: Exclusion::Biased { .. }, .. } => return None,
-        EventKind::StationRejected { station, .. } => {
+        // Of a bias, its own incident tells.
+        EventKind::StationRejected { station, reason } if !matches!(reason, Exclusion::Biased { .. }) => {
             ("station", key(&format!("station {}", station.0)), None)
         }
         EventKind::StationRestored { station } => ("", None, key(&format!("station {}", station.0))),
         EventKind::Ordered { order } => return is_listed(order).then_some(("order", None, None)),
         EventKind::Ended { .. } => ("end", None, None),
         EventKind::RunOpened(_)
+        | EventKind::StationRejected { .. }
         | EventKind::OrderRefused { .. }
         | EventKind::TetherTruth { .. }
         | EventKind::Tethered { .. }
