@@ -285,7 +285,7 @@ fn session(seed: u32, sigma_m: f64) -> Run {
     run.at = run.draws.on_disc() * 1.5;
     let last_s = 12.0 + 6.0 * f64::from(seed % 9);
     while run.t_s < last_s {
-        if seed % 3 == 0 {
+        if seed.is_multiple_of(3) {
             run.t_s += 1.0;
             let sets = run.sets(0.01, &none());
             run.hear(&sets);
