@@ -18,17 +18,29 @@ pub struct TakenBack {
     pub until_s: f64,
     /// Area that was guaranteed only by passes between the two times, square metres.
     pub area_m2: f64,
+    /// The part of this area that no later pass of the run guarantees, square metres. Absent while the run goes on, and
+    /// in reports of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub left_m2: Option<f64>,
 }
 
 impl std::fmt::Display for TakenBack {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { station, bias_m, since_s, until_s, area_m2 } = self;
+        let Self { station, bias_m, since_s, until_s, area_m2, left_m2 } = self;
         write!(
             f,
             "{area_m2:.1} m² scanned from T+{} to T+{}: the ranges of station {station} were wrong by {bias_m:+.2} m",
             clock(*since_s),
             clock(*until_s),
-        )
+        )?;
+        match left_m2 {
+            Some(left_m2) if *left_m2 < *area_m2 => write!(
+                f,
+                "; later passes of this run guarantee {:.1} m² of it, {left_m2:.1} m² stay in doubt",
+                area_m2 - left_m2
+            ),
+            _ => Ok(()),
+        }
     }
 }
 

@@ -268,8 +268,14 @@ mod tests {
     fn a_live_run_is_not_judged_by_figures_that_need_the_truth() {
         let expect =
             Expect { collisions_max: Some(0), coverage_reachable_min: Some(0.9), ..Expect::default() };
-        let coverage =
-            Coverage { reachable: 0.5, whole: 0.5, overlap: None, missed_area_m2: None, by_truth: None };
+        let coverage = Coverage {
+            reachable: 0.5,
+            whole: 0.5,
+            overlap: None,
+            missed_area_m2: None,
+            by_truth: None,
+            taken_back: None,
+        };
         let vehicle = Some(VehicleRecord::default());
         let run = Summary { vehicle, coverage: Some(coverage), ..Summary::default() };
         let misses: Vec<_> = expect.check(&run).iter().map(|miss| miss.key).collect();

@@ -185,7 +185,7 @@ impl Fold {
         let found = run.world.stations.iter().find(|other| other.id == station);
         let station = found.map_or_else(|| station.0.to_string(), |found| found.name.clone());
         let area_m2 = scanned.take_back(since_s);
-        self.known.taken_back.push(TakenBack { station, bias_m, since_s, until_s, area_m2 });
+        self.known.taken_back.push(TakenBack { station, bias_m, since_s, until_s, area_m2, left_m2: None });
     }
 
     fn note_fault(&mut self, t_s: f64, whose: &str, message: &str) {
@@ -310,8 +310,16 @@ impl Fold {
                 .zip(self.scanned.as_ref())
                 .map(|(survey, scanned)| survey.summary(scanned.believed().floor())),
             positioning: self.accuracy.positioning(self.known.mission_time_s.unwrap_or(0.0)),
+            taken_back: self.still_in_doubt(),
             ..self.known.clone()
         }
+    }
+
+    /// The floor whose guarantee was taken back, with the part that no later pass guarantees.
+    fn still_in_doubt(&self) -> Vec<TakenBack> {
+        let left_m2 = |time| self.scanned.as_ref().map(|scanned| scanned.left_in_doubt_m2(time));
+        let times = self.known.taken_back.iter().zip(1..);
+        times.map(|(floor, time)| TakenBack { left_m2: left_m2(time), ..floor.clone() }).collect()
     }
 
     /// The table of figures: the latest and the worst value of each, with its limit.

@@ -60,8 +60,8 @@ pub use readings::{
 pub use scanned::Scanned;
 pub use silence::Silence;
 pub use summary::{
-    Accuracy, Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, Protection, REPORT_VERSION, Stops,
-    Summary, Tether, Tracking,
+    Accuracy, Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, Protection, REPORT_VERSION,
+    Regained, Stops, Summary, Tether, Tracking,
 };
 pub use vehicle::VehicleRecord;
 

@@ -16,8 +16,10 @@ pub struct Passes {
     tool: Tool,
     /// The time of the first pass that guarantees a cell, milliseconds.
     guaranteed_ms: Vec<u32>,
-    /// Cells whose guarantee was taken back.
-    taken_back: Vec<bool>,
+    /// For each cell, the number of the last time that its guarantee was taken back; 0 if it never was.
+    taken_back: Vec<u16>,
+    /// How often guarantees were taken back.
+    times: u16,
     /// The smallest 95 % error with which each cell was passed, millimetres.
     error_mm: Vec<u16>,
     overlap: Overlap,
@@ -62,7 +64,8 @@ impl Passes {
         Self {
             tool,
             guaranteed_ms: vec![NOT_GUARANTEED; floor.len()],
-            taken_back: vec![false; floor.len()],
+            taken_back: vec![0; floor.len()],
+            times: 0,
             error_mm: vec![NEVER; floor.len()],
             overlap: Overlap::new(floor.width, floor.len()),
         }
@@ -106,14 +109,28 @@ impl Passes {
     /// Takes back the guarantee of cells that no pass before `since_s`, seconds, guarantees. Returns their number.
     pub(crate) fn take_back(&mut self, since_s: f64) -> usize {
         let since_ms = milliseconds(since_s);
+        self.times = self.times.saturating_add(1);
         let mut count = 0;
-        for (first_ms, is_taken) in self.guaranteed_ms.iter_mut().zip(&mut self.taken_back) {
+        for (first_ms, time) in self.guaranteed_ms.iter_mut().zip(&mut self.taken_back) {
             if (since_ms..NOT_GUARANTEED).contains(first_ms) {
-                (*first_ms, *is_taken) = (NOT_GUARANTEED, true);
+                (*first_ms, *time) = (NOT_GUARANTEED, self.times);
                 count += 1;
             }
         }
         count
+    }
+
+    /// Of the cells that lost their guarantee the `time`-th time, counted from 1, the number that is still in doubt.
+    pub(crate) fn left_in_doubt(&self, time: usize) -> usize {
+        (0..self.taken_back.len())
+            .filter(|cell| usize::from(self.taken_back[*cell]) == time && self.is_in_doubt(*cell))
+            .count()
+    }
+
+    /// The number of cells that lost their guarantee, and the number of them that a later pass guarantees.
+    pub fn taken_back(&self) -> (usize, usize) {
+        let taken = (0..self.taken_back.len()).filter(|cell| self.taken_back[*cell] > 0);
+        taken.fold((0, 0), |(all, again), cell| (all + 1, again + usize::from(self.is_guaranteed(cell))))
     }
 
     /// The half-width of the 95 % ellipse of a covariance, square metres, in the direction that matters to the tool:
@@ -129,7 +146,8 @@ impl Passes {
     pub(crate) fn join(&mut self, other: &Self, is_in_both: impl Fn(usize) -> bool) {
         let first_ms = self.guaranteed_ms.iter_mut().zip(&other.guaranteed_ms);
         first_ms.for_each(|(own, other)| *own = (*own).min(*other));
-        self.taken_back.iter_mut().zip(&other.taken_back).for_each(|(own, other)| *own |= other);
+        self.taken_back.iter_mut().zip(&other.taken_back).for_each(|(own, other)| *own = (*own).max(*other));
+        self.times = self.times.max(other.times);
         self.error_mm.iter_mut().zip(&other.error_mm).for_each(|(own, other)| *own = (*own).min(*other));
         self.overlap.join(&other.overlap, is_in_both);
     }
@@ -141,7 +159,7 @@ impl Passes {
 
     /// Whether the guarantee of a cell was taken back, and no later pass guarantees the cell.
     pub fn is_in_doubt(&self, cell: usize) -> bool {
-        self.taken_back[cell] && !self.is_guaranteed(cell)
+        self.taken_back[cell] > 0 && !self.is_guaranteed(cell)
     }
 
     /// The smallest 95 % error of a pass over a cell, millimetres; `None` if it was never passed.

@@ -4,7 +4,7 @@
 use crate::{
     passes::{Margins, Passes},
     silence::kept,
-    summary::{Coverage, CoverageByTruth},
+    summary::{Coverage, CoverageByTruth, Regained},
     true_errors::TrueErrors,
 };
 use nalgebra::Matrix2;
@@ -103,6 +103,12 @@ impl Scanned {
         self.passes.take_back(since_s) as f64 * self.believed.floor().cell_m2()
     }
 
+    /// Of the floor that lost its guarantee the `time`-th time, counted from 1, the area that is still in doubt, square
+    /// metres.
+    pub(crate) fn left_in_doubt_m2(&self, time: usize) -> f64 {
+        self.passes.left_in_doubt(time) as f64 * self.believed.floor().cell_m2()
+    }
+
     /// The half-width of the 95 % ellipse of a covariance, square metres, that matters to the tool at a pose, metres.
     pub(crate) fn across_m(&self, here: Pose, covariance: &Matrix2<f64>) -> f64 {
         self.passes.across_m(covariance, here.heading_rad)
@@ -150,7 +156,15 @@ impl Scanned {
             overlap: (counts.covered > 0).then(|| again / counts.covered as f64),
             missed_area_m2: to_scan.then_some(missed),
             by_truth: self.has_truth.then(|| self.by_truth()),
+            taken_back: self.regained(),
         }
+    }
+
+    /// The floor whose guarantee was taken back; `None` if no floor lost its guarantee.
+    fn regained(&self) -> Option<Regained> {
+        let (all, again) = self.passes.taken_back();
+        let area_m2 = |cells: usize| cells as f64 * self.believed.floor().cell_m2();
+        (all > 0).then(|| Regained { area_m2: area_m2(all), again_m2: area_m2(again) })
     }
 
     fn by_truth(&self) -> CoverageByTruth {

@@ -161,6 +161,27 @@ pub struct Coverage {
     pub missed_area_m2: Option<f64>,
     /// Coverage according to the true position; absent where the true position is not known.
     pub by_truth: Option<CoverageByTruth>,
+    /// The floor whose guarantee was taken back; absent if no floor lost its guarantee.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub taken_back: Option<Regained>,
+}
+
+/// Floor whose guarantee was taken back, and what later passes made of it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Regained {
+    /// All of this floor, square metres.
+    pub area_m2: f64,
+    /// The part that a later pass guarantees again, square metres.
+    pub again_m2: f64,
+}
+
+impl std::fmt::Display for Regained {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { area_m2, again_m2 } = self;
+        write!(f, "of {area_m2:.1} m² that lost the guarantee, later passes guarantee {again_m2:.1} m²")?;
+        let left_m2 = area_m2 - again_m2;
+        if left_m2 > 0.0 { write!(f, "; {left_m2:.2} m² stay in doubt") } else { Ok(()) }
+    }
 }
 
 /// Coverage according to the true position. Shares are 0 to 1.

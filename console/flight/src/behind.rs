@@ -9,7 +9,7 @@ use vehicle::wire::{
     PROTOCOL,
     message::{
         self, Ae, Commander, FromVehicle, Has, Hello, Limits, Mode, MotionKind, Odometry, Outline, Pong,
-        State, StationRanges, Tether, ToVehicle,
+        PulseLengths, State, StationRanges, Tether, ToVehicle,
     },
 };
 use world::{Point, Readings, Scan, Scanner, Shape, Sighting, Station};
@@ -203,8 +203,14 @@ fn told(readings: &Readings, stations: &[Station], tick_s: f64) -> message::Read
             set.ranges_m.iter().copied().filter(|range_m| *range_m > 0.0 && *range_m <= RANGE_MAX_M);
         Some(StationRanges { station: name(set.station)?, ranges_m: possible.collect() })
     });
+    let pulses = readings.pulses.iter().filter_map(|set| {
+        let lengths_m = set.lengths_m.iter().copied().filter(|length_m| length_m.abs() <= RANGE_MAX_M);
+        let (sender, receiver) = (name(set.sender)?, name(set.receiver)?);
+        Some(PulseLengths { sender, receiver, lengths_m: lengths_m.collect() })
+    });
     let world::Odometry { forward_m, sideways_m, turn_rad } = readings.odometry;
     message::Readings {
+        pulses: pulses.collect(),
         odometry: Some(Odometry { over_s: tick_s, forward_m, sideways_m, turn_rad }),
         ae: readings.ranging_cycle.then(|| Ae { ranges: ranges.collect(), ..Ae::default() }),
         contact: Some(readings.contact),

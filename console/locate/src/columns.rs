@@ -5,6 +5,7 @@ use crate::{
     problem::Problem,
 };
 use csv::StringRecord;
+use positioning::longest_pulse_m;
 use report::document::csv::cell;
 use std::collections::HashMap;
 use world::{Odometry, Point, Pose, Station, StationId};
@@ -79,6 +80,8 @@ pub(crate) struct Columns {
     sound_speed_m_s: f64,
     stations: HashMap<String, StationId>,
     station_names: String,
+    /// The surveyed places of the stations, metres.
+    places: Vec<(StationId, Point)>,
     /// Whether numbers have a decimal comma.
     pub has_commas: bool,
 }
@@ -174,6 +177,7 @@ impl Columns {
             sound_speed_m_s: sound_speed_m_s.unwrap_or(1.0),
             stations: by_number.chain(by_cell).chain(by_name).collect(),
             station_names: stations.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(", "),
+            places: stations.iter().map(|station| (station.id, station.position)).collect(),
             has_commas: false,
         })
     }
@@ -263,8 +267,27 @@ impl Columns {
             Some(heard) if heard.station == sender => wrong(format!(
                 "station {written} hears its own pulse; name the station that heard it in `station`"
             )),
-            Some(heard) => Ok(Some(Sent { sender, heard })),
+            Some(heard) => self.possible(cells, line, Sent { sender, heard }).map(Some),
         }
+    }
+
+    /// Refuses a pulse whose length is impossible between its stations.
+    fn possible(&self, cells: &StringRecord, line: u64, sent: Sent) -> Result<Sent, Problem> {
+        let at = |id| self.places.iter().find(|(own, _)| *own == id).map(|(_, place)| *place);
+        let distance_m = at(sent.sender).zip(at(sent.heard.station)).map_or(0.0, |(a, b)| (a - b).norm());
+        let most_m = longest_pulse_m(distance_m);
+        // The comparisons also refuse NaN.
+        if sent.heard.range_m > 0.0 && sent.heard.range_m <= most_m {
+            return Ok(sent);
+        }
+        let column = if self.has(RANGE) { RANGE } else { ARRIVAL };
+        let (written, from, to) =
+            (self.cell(cells, column), self.cell(cells, SENDER), self.cell(cells, STATION));
+        let what = format!(
+            "`{written}` is impossible for a pulse from station {from} to {to}, which are {distance_m:.2} m apart: \
+             the length must be above 0 and at most {most_m:.2} m"
+        );
+        Err(self.problem(line, column, what))
     }
 
     fn tool_on(&self, cells: &StringRecord, line: u64) -> Result<Option<bool>, Problem> {

@@ -217,9 +217,10 @@ impl Task<'_> {
             let share_m = noise.sigma_ratio() * distance_m.abs();
             share_m.hypot(timing.mean_sigma_m(share_m, 1.0)).max(LEAST_SIGMA_M)
         };
-        let tests = pulsing.tests(&self.scenario.sim.world.stations, sigma_m).map_err(|(phase, what)| {
-            bad_input(format!("{}: pulses {}: {what}", self.shown, phase.words()))
-        })?;
+        let scatter = self.scatter(Kind::Ranges);
+        let tests = pulsing.tests(&self.scenario.sim.world.stations, (sigma_m, &scatter)).map_err(
+            |(phase, what)| bad_input(format!("{}: pulses {}: {what}", self.shown, phase.words())),
+        )?;
         if !tests.is_empty() && (self.finds_sound_speed || self.finds_clock_offset) {
             return Err(bad_input(format!(
                 "{}: the pulses of the stations already give the speed of sound and the clocks; leave out --find",

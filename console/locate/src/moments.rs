@@ -163,7 +163,7 @@ impl Moments {
     fn whole(&self, mut moment: Moment) -> Moment {
         let (_, impossible) = match self.columns.kind() {
             Kind::Ranges => self.possible.ranges(&moment.ranges),
-            Kind::Differences => self.possible.differences(&moment.ranges),
+            Kind::Differences => self.possible.differences(&moment.ranges, &[]),
         };
         moment.heard.retain(|heard| {
             let is_it = |one: &Impossible| {

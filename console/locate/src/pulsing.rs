@@ -1,9 +1,14 @@
 //! Collects the pulses of stations in a file, test by test.
 
-use crate::{columns::Sent, moments::Moment};
+use crate::{
+    columns::{Heard, Sent},
+    moments::Moment,
+    repeats::{Pooled, Scatter, mean_m},
+};
 use mission::event::PulsePhase;
 use positioning::{Pulse, PulseError, PulseSeries, PulseTest};
-use world::Station;
+use std::collections::BTreeMap;
+use world::{Station, StationId};
 
 /// A pulse test of a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,14 +56,15 @@ impl Pulsing {
         }
     }
 
-    /// Evaluates all tests. `sigma_m` gives the standard deviation of a single range at a distance, metres.
+    /// Evaluates all tests. `sigma_m` gives the standard deviation of a single range at a distance, metres, and `scatter`
+    /// the part of it that repetitions show.
     ///
     /// # Errors
     /// The phase and the reason of a test that gives no result.
     pub(crate) fn tests(
         &self,
         stations: &[Station],
-        sigma_m: impl Fn(f64) -> f64,
+        (sigma_m, scatter): (impl Fn(f64) -> f64, &Scatter),
     ) -> Result<Vec<Pulsed>, (PulsePhase, PulseError)> {
         let n = self.groups.len();
         let evaluated = |(index, group): (usize, &Group)| {
@@ -73,7 +79,7 @@ impl Pulsing {
                 length_m: sent.heard.range_m,
                 sigma_m: sigma_m(sent.heard.range_m) / f64::from(sent.heard.repetitions).sqrt(),
             };
-            let pulses: Vec<Pulse> = group.pulses.iter().map(pulse).collect();
+            let pulses: Vec<Pulse> = group.counted(scatter).iter().map(pulse).collect();
             let found = PulseTest::new(&pulses, stations);
             found.map(|test| Pulsed { phase, t_s: group.t_s, test }).map_err(|error| (phase, error))
         };
@@ -81,7 +87,32 @@ impl Pulsing {
     }
 }
 
-/// The corrections that tests give.
+impl Group {
+    /// The pulses that count. Repetitions of a pulse that scatter too little to be independent count as one.
+    fn counted(&self, scatter: &Scatter) -> Vec<Sent> {
+        let mut by_pair: BTreeMap<(StationId, StationId), Vec<Heard>> = BTreeMap::new();
+        for sent in &self.pulses {
+            by_pair.entry((sent.sender, sent.heard.station)).or_default().push(sent.heard);
+        }
+        let mut pooled = Pooled::default();
+        for heard in by_pair.values() {
+            let variance_m2 = mean_m(heard).map_or(0.0, |mean_m| scatter.variance_m2(mean_m));
+            pooled.take(heard, variance_m2);
+        }
+        if !pooled.are_narrow() {
+            return self.pulses.clone();
+        }
+        let one = |((sender, station), heard): (&(StationId, StationId), &Vec<Heard>)| {
+            let repetitions = heard.iter().map(|one| one.repetitions).max()?;
+            let heard = Heard { station: *station, range_m: mean_m(heard)?, repetitions };
+            Some(Sent { sender: *sender, heard })
+        };
+        by_pair.iter().filter_map(one).collect()
+    }
+}
+
+/// The corrections that tests give; a test that contradicts the survey gives none.
 pub(crate) fn series(tests: &[Pulsed]) -> PulseSeries {
-    PulseSeries { tests: tests.iter().map(|pulsed| (pulsed.t_s, pulsed.test.clone())).collect() }
+    let usable = tests.iter().filter(|pulsed| pulsed.test.is_usable());
+    PulseSeries { tests: usable.map(|pulsed| (pulsed.t_s, pulsed.test.clone())).collect() }
 }

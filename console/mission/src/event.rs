@@ -27,7 +27,7 @@ pub use effort::Effort;
 pub use log_line::{LogLine, late_text};
 pub use measured::{Asked, Measured, ToolTrack};
 pub use offer::{OfferEnd, OfferStage, PlanScan, PlanScans};
-pub use pulse::{PulsePhase, pulse_text};
+pub use pulse::{PulsePhase, change_text, pulse_text};
 pub use recorded::RecordedAnswers;
 pub(crate) use rounding::rounded_command;
 pub use run_opened::RunOpened;
@@ -219,6 +219,10 @@ pub enum EventKind {
     SessionCalibrated {
         /// Share by which all ranges are too long.
         scale: Estimated,
+        /// Correlation of this share with the slip of the robot, 0 to 1; present only if the fixes cannot tell the two
+        /// apart.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        slip_correlation: Option<f64>,
     },
     /// The stations sent pulses that the others heard.
     PulsesTested {

@@ -57,7 +57,7 @@ pub use particle::{Particles, ParticlesConfig};
 pub use positioner::{Agreement, CycleResult, Doubt, Estimate, Positioner, PositionerConfig};
 pub use possible::{Impossible, Possible};
 pub use protection::{Guard, Multipliers, Risk, Unprotected, are_on_line};
-pub use pulses::{Pulse, PulseError, PulseSeries, PulseTest};
+pub use pulses::{Pulse, PulseError, PulseSeries, PulseTest, longest_pulse_m};
 pub use quality::{alarm_limit, scatter_limit};
 pub use screened::Screened;
 pub use session::{CommonError, Session, Verdict, Wrong};

@@ -13,6 +13,7 @@ use crate::{
     protection,
     pulses::PulseTest,
     session::{CommonError, shift_by},
+    session_calibration::Estimated,
     sides::{Sides, both, is_behind},
     solver_kind::SolverKind,
     station_clocks::StationClocks,
@@ -185,7 +186,7 @@ impl Positioner {
     pub fn cycle(&mut self, sets: &[RangeSet]) -> CycleResult {
         let (sets, impossible) = match &self.possible {
             Some(possible) if self.are_distances() => possible.ranges(sets),
-            Some(possible) => possible.differences(sets),
+            Some(possible) => possible.differences(sets, &self.clocks_m()),
             None => (sets.into(), Vec::new()),
         };
         let mut result = CycleResult {
@@ -246,6 +247,11 @@ impl Positioner {
             };
         }
         CycleResult { rangings, ..result }
+    }
+
+    /// The estimated offsets of the stations' clocks at present, metres; empty if the stations share one clock.
+    fn clocks_m(&self) -> Vec<(StationId, Estimated)> {
+        self.clocks.as_ref().map(StationClocks::present_offsets_m).unwrap_or_default()
     }
 
     /// Returns the mean length by which ranges exceed the distances from the estimated position, metres; 0 if the

@@ -4,10 +4,13 @@
 use crate::{
     aggregate::is_usable,
     noise::{RangeNoise, Timing},
+    session_calibration::Estimated,
 };
 use std::borrow::Cow;
 use world::{Boundary, Point, RangeSet, Station, StationId};
 
+/// Number of standard deviations by which the estimated offset of a clock may be wrong before its ranges are impossible.
+const CLOCK_SIGMAS: f64 = 5.0;
 /// Maximum distance of a station behind the wall, metres.
 const BEHIND_WALL_M: f64 = 0.01;
 
@@ -38,6 +41,8 @@ struct Reach {
     id: StationId,
     at: Point,
     farthest_m: f64,
+    /// The largest error of the estimated offset of the station's clock, metres.
+    clock_m: f64,
 }
 
 impl Possible {
@@ -53,6 +58,7 @@ impl Possible {
             id: station.id,
             at: station.position,
             farthest_m: farthest_m(boundary, station.position),
+            clock_m: 0.0,
         };
         Self {
             stations: stations.iter().map(reach).collect(),
@@ -76,11 +82,25 @@ impl Possible {
 
     /// Separates possible from impossible ranges when only their differences count: two ranges may differ by no more
     /// than the distance between their stations. Ranges that agree with most others are kept.
-    pub fn differences<'a>(&self, sets: &'a [RangeSet]) -> (Cow<'a, [RangeSet]>, Vec<Impossible>) {
+    ///
+    /// `clocks_m` are the estimated offsets of the stations' clocks, metres; empty if they share one clock. Five times
+    /// their standard deviation allows for a wrong estimate.
+    pub fn differences<'a>(
+        &self,
+        sets: &'a [RangeSet],
+        clocks_m: &[(StationId, Estimated)],
+    ) -> (Cow<'a, [RangeSet]>, Vec<Impossible>) {
+        let late = |station| {
+            let clock = clocks_m.iter().find(|(id, _)| *id == station);
+            clock.map_or(Estimated { value: 0.0, sigma: 0.0 }, |(_, offset)| *offset)
+        };
         let mut all: Vec<(Reach, f64)> = Vec::new();
         for set in sets {
             let reach = self.stations.iter().find(|reach| reach.id == set.station);
-            all.extend(reach.iter().flat_map(|reach| set.ranges_m.iter().map(|range_m| (**reach, *range_m))));
+            let late = late(set.station);
+            let late_by = |reach: &Reach| Reach { clock_m: CLOCK_SIGMAS * late.sigma, ..*reach };
+            let ranges = |reach| set.ranges_m.iter().map(move |range_m| (reach, range_m - late.value));
+            all.extend(reach.map(late_by).into_iter().flat_map(ranges));
         }
         let mut refused = Vec::new();
         loop {
@@ -92,13 +112,16 @@ impl Possible {
         }
         let first_m = all.iter().map(|(_, range_m)| *range_m).fold(f64::INFINITY, f64::min);
         sorted_out(sets, |set, range_m| {
+            let late_m = late(set.station).value;
+            let range_m = range_m - late_m;
             let is_refused = refused
                 .iter()
                 .any(|(reach, refused_m)| reach.id == set.station && refused_m.total_cmp(&range_m).is_eq());
             let first = all.iter().find(|(_, kept_m)| kept_m.total_cmp(&first_m).is_eq());
             let reach = self.stations.iter().find(|reach| reach.id == set.station);
-            let most_m =
-                first.zip(reach).map_or(0.0, |((first, _), reach)| first_m + self.apart_m(first, reach));
+            let most_m = first
+                .zip(reach)
+                .map_or(0.0, |((first, _), reach)| first_m + self.apart_m(first, reach) + late_m);
             is_refused.then_some(most_m)
         })
     }
@@ -110,6 +133,7 @@ impl Possible {
     /// Returns the largest possible difference between the ranges of two stations, metres.
     fn apart_m(&self, one: &Reach, other: &Reach) -> f64 {
         let error_m = self.share * (one.farthest_m + other.farthest_m) + 2.0 * self.fixed_m;
+        let error_m = error_m + one.clock_m + other.clock_m;
         (one.at - other.at).norm() + error_m
     }
 }
@@ -196,14 +220,33 @@ mod tests {
     fn arrivals_that_differ_more_than_the_stations_are_apart_are_left_out() {
         let (possible, stations) = possible();
         let mut sets = heard(Point::new(1.0, 2.0), &stations);
-        assert!(possible.differences(&sets).1.is_empty());
+        assert!(possible.differences(&sets, &[]).1.is_empty());
         for sentinel in [0.0, 9_999.0, -65_535.0] {
             for set in &mut sets {
                 set.ranges_m[0] += 1_000.0;
             }
             sets[0].ranges_m[0] = sentinel;
-            let (kept, refused) = possible.differences(&sets);
+            let (kept, refused) = possible.differences(&sets, &[]);
             assert_eq!((kept.len(), refused.len(), refused[0].station), (5, 1, stations[0].id), "{sentinel}");
         }
+    }
+
+    #[test]
+    fn clocks_that_are_far_apart_cost_no_station_if_their_offsets_may_be_large() {
+        let (possible, stations) = possible();
+        let mut sets = heard(Point::new(1.0, 2.0), &stations);
+        let late_m = [30.0, -25.0, 0.0, 18.0, -40.0, 5.0];
+        sets.iter_mut().zip(late_m).for_each(|(set, late_m)| set.ranges_m[0] += 200.0 + late_m);
+        assert!(!possible.differences(&sets, &[]).1.is_empty());
+        let clocks = |late_m: &[f64], sigma| -> Vec<(StationId, Estimated)> {
+            stations.iter().zip(late_m).map(|(s, m)| (s.id, Estimated { value: *m, sigma })).collect()
+        };
+        assert!(possible.differences(&sets, &clocks(&[0.0; 6], 20.0)).1.is_empty());
+        // Once the offsets are known, an impossible range shows again.
+        let known = clocks(&late_m, 0.05);
+        assert!(possible.differences(&sets, &known).1.is_empty());
+        sets[2].ranges_m[0] += 20.0;
+        let (kept, refused) = possible.differences(&sets, &known);
+        assert_eq!((kept.len(), refused.len(), refused[0].station), (5, 1, stations[2].id));
     }
 }

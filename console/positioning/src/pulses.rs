@@ -6,13 +6,19 @@
 //! receiver, minus the offset of the sender. Pulses in both directions separate the two. The model is linear, and
 //! residuals show a station that is not at its surveyed place.
 
-use crate::{fix::Integrity, quality::integrity_of, session_calibration::Estimated};
+use crate::{calibration::MOST_SCALE, fix::Integrity, quality::integrity_of, session_calibration::Estimated};
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 use world::{RangeSet, Station, StationId};
 
 /// The largest number that is accepted as a length, metres.
 const LENGTH_LIMIT_M: f64 = 1e6;
+/// The largest offset between two clocks that is accepted, as a length that sound travels, metres.
+const MOST_OFFSET_M: f64 = 20.0;
+/// The least change of the scale between two tests that matters.
+const LEAST_CHANGE: f64 = 0.005;
+/// Number of standard deviations above which the scale has changed between two tests.
+const CHANGED: f64 = 3.0;
 /// Standard deviation of the scale above which pulses do not determine it.
 const UNKNOWN_SCALE: f64 = 0.05;
 /// Standard deviation of an offset above which pulses do not determine it, metres.
@@ -33,8 +39,19 @@ pub struct Pulse {
     pub sigma_m: f64,
 }
 
+/// Returns the longest length of a pulse over a distance that is possible if the stations share a clock, metres: the
+/// speed of sound is wrong by at most 30 %, and the clocks of two stations differ by at most 20 m of sound. The length
+/// must also be positive.
+///
+/// ```
+/// assert_eq!(positioning::longest_pulse_m(10.0), 33.0);
+/// ```
+pub fn longest_pulse_m(distance_m: f64) -> f64 {
+    distance_m * (1.0 + MOST_SCALE) + MOST_OFFSET_M
+}
+
 /// Why pulses give no calibration.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PulseError {
     /// A pulse names a station that was not surveyed.
@@ -44,7 +61,10 @@ pub enum PulseError {
         station: StationId,
     },
     /// A pulse cannot be used: it has the same sender and receiver, or its length or scatter is not a valid number.
-    #[error("pulse {index} has the same sender and receiver, or a length that is not a number")]
+    #[error(
+        "pulse {} cannot be used: check that another station heard it, and that its length is a number below 1000 km",
+        .index + 1
+    )]
     BadPulse {
         /// Index of the pulse.
         index: usize,
@@ -54,6 +74,17 @@ pub enum PulseError {
         "the pulses do not separate the speed of sound from the clocks; let every station send and every other hear"
     )]
     NotDetermined,
+    /// All lengths are too long, or too short, by a share that no speed of sound explains.
+    #[error(
+        "the pulses make all ranges {:+.0} % too long, and a speed of sound is wrong by at most {:.0} %; check the unit of \
+         the pulses, the assumed speed of sound, and the survey of the stations",
+        100.0 * .scale,
+        100.0 * MOST_SCALE
+    )]
+    Implausible {
+        /// The share by which all lengths are too long.
+        scale: f64,
+    },
 }
 
 /// The result of a pulse test.
@@ -111,6 +142,9 @@ impl PulseTest {
         check(pulses, stations)?;
         let ids = taking_part(pulses);
         let fit = fit(pulses, &ids, stations).ok_or(PulseError::NotDetermined)?;
+        if fit.scale.value.abs() > MOST_SCALE {
+            return Err(PulseError::Implausible { scale: fit.scale.value });
+        }
         let integrity = integrity_of(fit.chi2, fit.degrees_of_freedom);
         let suspect = (integrity == Integrity::Alarm).then(|| suspect(pulses, &ids, stations)).flatten();
         let residual_m = |pulse: &Pulse| {
@@ -137,6 +171,34 @@ impl PulseTest {
     /// Returns the offset of a station, metres; 0 for a station that took no part.
     pub fn offset_m(&self, station: StationId) -> f64 {
         self.offsets_m.iter().find(|(id, _)| *id == station).map_or(0.0, |(_, offset)| offset.value)
+    }
+
+    /// Whether ranges are corrected by this test: not if its pulses contradict the survey.
+    pub fn is_usable(&self) -> bool {
+        self.integrity != Integrity::Alarm
+    }
+
+    /// Returns by which share ranges have become longer since an earlier test; `None` if chance explains the change, or
+    /// if it is below 0.5 %.
+    ///
+    /// ```
+    /// use positioning::{Estimated, Integrity, PulseTest};
+    /// use world::StationId;
+    /// let test = |value| PulseTest {
+    ///     scale: Estimated { value, sigma: 0.001 },
+    ///     offsets_m: Vec::new(),
+    ///     integrity: Integrity::Ok,
+    ///     suspect: None,
+    ///     worst: (StationId(1), StationId(2), 0.0),
+    ///     pulses: 12,
+    /// };
+    /// assert_eq!(test(0.018).change_since(&test(0.016)), None);
+    /// assert!((test(0.060).change_since(&test(0.018)).unwrap().value - 0.042).abs() < 1e-12);
+    /// ```
+    pub fn change_since(&self, before: &Self) -> Option<Estimated> {
+        let value = self.scale.value - before.scale.value;
+        let sigma = self.scale.sigma.hypot(before.scale.sigma);
+        (value.abs() > (CHANGED * sigma).max(LEAST_CHANGE)).then_some(Estimated { value, sigma })
     }
 }
 

@@ -1,8 +1,10 @@
 //! Calibrates the speed of sound and the stations during a mission, from the last fixes and the motion between them.
 //!
-//! The unknowns are the position of each of the last fixes, its time of emission if that is unknown, the scale of all ranges (constant, or linear in time), and
-//! the biases of stations that were found wrong. A bounded number of Gauss-Newton steps per cycle fits them to the
-//! ranges and to the odometry between the fixes. All biases at once cannot be told from a shift of the whole path, so a
+//! The unknowns are the position of each of the last fixes, its time of emission if that is unknown, the scale of all
+//! ranges (constant, or linear in time), the share by which the robot slips, and the biases of stations that were found
+//! wrong. Slip stretches the path as a wrong speed of sound does, so the stated error of the scale contains it. A bounded
+//! number of Gauss-Newton steps per cycle fits the unknowns to the ranges and to the odometry between the fixes. All
+//! biases at once cannot be told from a shift of the whole path, so a
 //! bias is tested one station at a time, beside a free scale: its size over its standard deviation decides (Baarda
 //! 1968).
 
@@ -135,6 +137,7 @@ pub struct SessionCalibration {
     known: Vec<Known>,
     window: Window,
     scale: Estimated,
+    slip_correlation: f64,
     aggregation: Aggregation,
     noise: RangeNoise,
     timing: Timing,
@@ -157,8 +160,9 @@ impl SessionCalibration {
             config,
             stations: stations.to_vec(),
             known: vec![Known::default(); stations.len()],
-            window: Window::new(config.fixes, config.sound_speed == SoundSpeed::Linear),
+            window: Window::new(config.fixes, config.sound_speed == SoundSpeed::Linear, motion.sigma_per_m),
             scale: Estimated { value: 0.0, sigma: window::SCALE_SIGMA },
+            slip_correlation: 0.0,
             aggregation,
             noise,
             timing,
@@ -191,6 +195,12 @@ impl SessionCalibration {
     /// The share by which all ranges are too long.
     pub fn scale(&self) -> Estimated {
         self.scale
+    }
+
+    /// The correlation of this share with the slip of the robot, if it is so large that the two cannot be told apart:
+    /// above 0.95. Only differences of arrivals leave them together, because single ranges show the size of the path.
+    pub fn slip_correlation(&self) -> Option<f64> {
+        Some(self.slip_correlation).filter(|correlation| *correlation > NOT_SEPARABLE)
     }
 
     /// The stations with a detected bias: the length by which their ranges are too long, metres.
@@ -229,7 +239,7 @@ impl SessionCalibration {
             .collect();
         let Some(fitted) = self.window.fit(self.stations.len(), &active) else { return Vec::new() };
         if fitted.scale.value.abs() < MOST_SCALE {
-            self.scale = fitted.scale;
+            (self.scale, self.slip_correlation) = (fitted.scale, fitted.slip_correlation);
         }
         let mut news: Vec<News> = self.separable(&fitted).into_iter().collect();
         news.extend(self.judge(&fitted));

@@ -125,6 +125,13 @@ impl StationClocks {
         })
     }
 
+    /// The offset of each station at present, relative to the mean of all offsets, metres.
+    pub fn present_offsets_m(&self) -> Vec<(StationId, Estimated)> {
+        let mut present = self.clone();
+        present.advance();
+        present.offsets_m().collect()
+    }
+
     /// The present offset of each station, metres, and its change in a tick, metres.
     pub fn clocks_m(&self) -> Vec<(StationId, f64, f64)> {
         let n = self.stations.len();

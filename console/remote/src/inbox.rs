@@ -19,7 +19,7 @@ use vehicle::{
     },
 };
 use world::{
-    RangeSet, StationId,
+    PulseSet, RangeSet, StationId,
     scan::{LONGEST_M, RangesMm},
 };
 
@@ -310,6 +310,11 @@ impl Inbox {
             });
             self.readings.ranges = heard.filter(|set| !set.ranges_m.is_empty()).collect();
         }
+        let pulses = readings.pulses.iter().filter_map(|of| {
+            let (sender, receiver) = (*self.stations.get(&of.sender)?, *self.stations.get(&of.receiver)?);
+            Some(PulseSet { sender, receiver, lengths_m: of.lengths_m.clone() })
+        });
+        self.readings.pulses.extend(pulses.filter(|set| !set.lengths_m.is_empty()));
     }
 
     /// Returns the content of the messages that have arrived since the last tick.

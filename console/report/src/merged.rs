@@ -99,6 +99,7 @@ impl Merged {
             }),
         );
         text.some("overlap", self.coverage.overlap.map(overlap));
+        text.some("in doubt", self.coverage.taken_back.map(|floor| floor.to_string()));
         text.lines(floor::lines(&self.floor));
         text.0
     }
@@ -120,6 +121,7 @@ impl MergedRun {
         file("recording", files.and_then(|logs| logs.recording.as_ref()), &self.recording_sha256);
         file("journal", files.and_then(|logs| logs.journal.as_ref()), &self.journal_sha256);
         text.some("WARNING", files.and_then(|logs| logs.error.as_ref()));
+        text.lines(self.summary.taken_back.iter().map(|floor| ("", format!("in doubt {floor}"))));
     }
 }
 

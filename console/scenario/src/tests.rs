@@ -371,6 +371,12 @@ const MISTAKES: &[(&str, &str, &str)] = &[
         "[ae]\nemission_time = \"late\"",
         "5:17: ae.emission_time = \"late\": must be one of known, unknown",
     ),
+    // One mistake has one message.
+    (
+        "[ae]",
+        "[ae]\nclock_offset_sigma_m = 3\nemission_time = \"unknow\"",
+        "6:17: ae.emission_time = \"unknow\": must be one of known, unknown",
+    ),
     (
         "[ae]",
         "[ae]\nemission_time = \"unknown\"",

@@ -125,23 +125,31 @@ fn a_biased_station_takes_the_guarantee_back_until_a_later_pass() {
     let there = [(0, opened()), (0, start), (1, estimated(0.25, 0.0, 0.01)), (3, estimated(1.25, 0.0, 0.01))];
     let passed = |events: &[(u64, Value)]| {
         let run = fold(events);
-        let (scanned, area_m2) =
-            (run.scanned().unwrap(), run.summary().taken_back.first().map(|t| t.area_m2));
+        let (scanned, taken) = (run.scanned().unwrap(), run.summary().taken_back);
+        let taken = taken.first().cloned();
         let count =
             |is: &dyn Fn(usize) -> bool| (0..scanned.believed().floor().len()).filter(|c| is(*c)).count();
         let passes = scanned.passes();
-        (count(&|cell| passes.is_guaranteed(cell)), count(&|cell| passes.is_in_doubt(cell)), area_m2)
+        (count(&|cell| passes.is_guaranteed(cell)), count(&|cell| passes.is_in_doubt(cell)), taken)
     };
     let (early, ..) = passed(&there[..3]);
     let (all, none, _) = passed(&there);
     assert!(early > 0 && all > early && none == 0, "{early} of {all}");
     let doubted = [&there[..], &[(4, biased)]].concat();
-    let (left, in_doubt, area_m2) = passed(&doubted);
+    let (left, in_doubt, taken) = passed(&doubted);
     assert_eq!((left, in_doubt), (early, all - early));
-    assert!(area_m2.unwrap() > 0.0);
+    let taken = taken.unwrap();
+    assert!(taken.area_m2 > 0.0 && taken.left_m2 == Some(taken.area_m2), "{taken:?}");
+    assert!(taken.to_string().ends_with("wrong by +0.15 m"), "{taken}");
     let back = [&doubted[..], &[(5, estimated(0.25, 0.0, 0.01))]].concat();
-    let (again, in_doubt, _) = passed(&back);
+    let (again, in_doubt, taken) = passed(&back);
     assert_eq!((again, in_doubt), (all, 0));
+    // The report explains why the re-scan lists less than was taken back.
+    let taken = taken.unwrap();
+    assert_eq!(taken.left_m2, Some(0.0));
+    let words =
+        format!("later passes of this run guarantee {:.1} m² of it, 0.0 m² stay in doubt", taken.area_m2);
+    assert!(taken.to_string().ends_with(&words), "{taken}");
 }
 
 #[test]
@@ -168,7 +176,9 @@ fn the_floor_in_doubt_is_listed_as_in_the_report_with_its_place() {
     let listed = watch.apply(&biased).unwrap().to_vec();
     reported.apply(&biased);
     let floors: Vec<TakenBack> = listed.iter().map(|doubt| doubt.floor.clone()).collect();
-    assert!(!floors.is_empty() && floors == reported.summary().taken_back, "{floors:?}");
+    assert!(!floors.is_empty() && floors == reported.taken_back(), "{floors:?}");
+    let summary = reported.summary().taken_back;
+    assert_eq!((summary[0].area_m2, summary[0].left_m2), (floors[0].area_m2, Some(floors[0].area_m2)));
     // Only the second half of the way is in doubt.
     let at = listed[0].at.unwrap();
     assert!(at.x > 0.5 && at.x < 1.6 && at.y.abs() < 0.3, "{at}");

@@ -2,8 +2,8 @@
 
 use super::{figures, name_of};
 use crate::cli::LocateArgs;
-use ::locate::{Doubts, Survey, Tally};
-use mission::event::pulse_text;
+use ::locate::{Doubts, Pulsed, Survey, Tally};
+use mission::event::{change_text, pulse_text};
 use positioning::{Agreement, Wrong};
 use report::forecast::line_of_stations;
 use scenario::Scenario;
@@ -85,13 +85,19 @@ pub(super) fn human(
     text.0
 }
 
-/// The pulse tests of the stations, one line each.
-fn pulses<'a>(scenario: &'a Scenario, survey: &'a Survey) -> impl Iterator<Item = String> + 'a {
-    let stations = &scenario.sim.world.stations;
-    survey.pulses.iter().map(move |pulsed| {
-        let text = pulse_text(pulsed.phase, &pulsed.test, stations);
-        text.strip_prefix("pulse test ").unwrap_or(&text).to_owned()
-    })
+/// The pulse tests of the stations, one line each, each followed by its consequence if it has one.
+fn pulses(scenario: &Scenario, survey: &Survey) -> Vec<String> {
+    let (mut lines, mut before) = (Vec::new(), None);
+    for Pulsed { phase, test, .. } in &survey.pulses {
+        let text = pulse_text(*phase, test, &scenario.sim.world.stations);
+        lines.push(text.strip_prefix("pulse test ").unwrap_or(&text).to_owned());
+        if !test.is_usable() {
+            lines.push(format!("the test {} corrects no range", phase.words()));
+            continue;
+        }
+        lines.extend(before.replace(test).and_then(|before| change_text(before, test)));
+    }
+    lines
 }
 
 fn of_file(text: &mut Lines, survey: &Survey, shown: &str) {

@@ -159,7 +159,7 @@ impl Task<'_> {
             // With an unknown clock offset, any length is possible.
             Kind::Ranges if self.finds_clock_offset => (moment.ranges.as_slice().into(), Vec::new()),
             Kind::Ranges => possible.ranges(&moment.ranges),
-            Kind::Differences => possible.differences(&moment.ranges),
+            Kind::Differences => possible.differences(&moment.ranges, &[]),
         };
         let mut rangings = locating.aggregation.aggregate(&sets, &self.noise()).unwrap_or_default();
         // Differences show only which station is nearest, not how near. A distance of zero is assumed: it gives the

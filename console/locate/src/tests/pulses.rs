@@ -14,10 +14,15 @@ const AT: Point = Point::new(3.0, 0.0);
 
 /// Rows with pulses from every station to every other at a time.
 fn pulses(text: &mut String, t_s: f64, stations: &[Station]) {
+    scaled(text, t_s, stations, SCALE);
+}
+
+/// The same, with another share by which ranges are too long.
+fn scaled(text: &mut String, t_s: f64, stations: &[Station], scale: f64) {
     for (from, sender) in stations.iter().enumerate() {
         for (to, receiver) in stations.iter().enumerate().filter(|(to, _)| *to != from) {
             let distance_m = (sender.position - receiver.position).norm();
-            let length_m = distance_m * (1.0 + SCALE) + OFFSETS_M[to] - OFFSETS_M[from];
+            let length_m = distance_m * (1.0 + scale) + OFFSETS_M[to] - OFFSETS_M[from];
             writeln!(text, "{t_s},{},{},{length_m}", sender.name, receiver.name).unwrap();
         }
     }
@@ -104,4 +109,83 @@ fn wrong_pulses_are_named_with_row_and_remedy() {
     let task = crate::Task { finds_sound_speed: true, ..readable.task(&scenario) };
     let twice = task.survey().unwrap_err().to_string();
     assert!(twice.contains("already give the speed of sound and the clocks; leave out --find"), "{twice}");
+}
+
+/// A file with pulses before the robot, in which one length is replaced.
+fn replaced(length: &str) -> Readable {
+    let stations = scenario().sim.world.stations;
+    let mut text = "t_s,sender,station,range_m\n".to_owned();
+    pulses(&mut text, 0.0, &stations);
+    ranges(&mut text, 5.0, &stations);
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    let (start, _) = lines[3].rsplit_once(',').unwrap();
+    lines[3] = format!("{start},{length}");
+    Readable::new("r.csv", lines.join("\n") + "\n")
+}
+
+#[test]
+fn a_pulse_of_an_impossible_length_is_a_bad_row() {
+    for length in ["nan", "inf", "1e308", "65535", "-5", "0"] {
+        let readable = replaced(length);
+        let text = readable.refused();
+        for part in
+            ["r.csv, line 4, range_m:", &format!("`{length}` is impossible for a pulse"), "--skip-bad-rows"]
+        {
+            assert!(text.contains(part), "{length}: {text}");
+        }
+        let scenario = scenario();
+        let task = crate::Task { skips_bad_rows: true, ..readable.task(&scenario) };
+        let survey = task.survey().unwrap();
+        assert_eq!((survey.bad, survey.pulses[0].test.pulses), (1, 29), "{length}");
+        assert!((survey.pulses[0].test.scale.value - SCALE).abs() < 1e-6, "{length}");
+    }
+}
+
+#[test]
+fn a_speed_of_sound_that_pulses_make_implausible_is_refused() {
+    for scale in [-0.5, 0.8] {
+        let stations = scenario().sim.world.stations;
+        let mut text = "t_s,sender,station,range_m\n".to_owned();
+        scaled(&mut text, 0.0, &stations, scale);
+        ranges(&mut text, 5.0, &stations);
+        let text = Readable::new("r.csv", text).refused();
+        assert!(text.contains("r.csv: pulses before the run: the pulses make all ranges"), "{text}");
+        assert!(text.contains("check the unit of the pulses"), "{text}");
+    }
+}
+
+#[test]
+fn repetitions_of_a_pulse_that_are_copies_count_as_one() {
+    let stations = scenario().sim.world.stations;
+    let survey = |copies: u32| {
+        let mut text = "t_s,sender,station,range_m\n".to_owned();
+        (0..copies).for_each(|_| pulses(&mut text, 0.0, &stations));
+        ranges(&mut text, 5.0, &stations);
+        let (scenario, readable) = (scenario(), Readable::new("r.csv", text));
+        readable.task(&scenario).survey().unwrap().pulses.remove(0).test
+    };
+    let (one, copies) = (survey(1), survey(1_000));
+    assert_eq!((one.pulses, one.integrity), (copies.pulses, copies.integrity));
+    assert!((one.scale.sigma / copies.scale.sigma - 1.0).abs() < 1e-6, "{one:?}, {copies:?}");
+}
+
+#[test]
+fn a_test_that_contradicts_the_survey_corrects_nothing() {
+    let stations = scenario().sim.world.stations;
+    let mut moved = stations.clone();
+    moved[1].position += world::Vector::new(0.0, 3.0);
+    let mut text = "t_s,sender,station,range_m\n".to_owned();
+    pulses(&mut text, 0.0, &moved);
+    ranges(&mut text, 5.0, &stations);
+    let (scenario, readable) = (scenario(), Readable::new("r.csv", text));
+    let task = readable.task(&scenario);
+    let survey = task.survey().unwrap();
+    assert_eq!(survey.pulses[0].test.integrity, Integrity::Alarm);
+    let (_, events) = located(&task, &survey);
+    let ranged = events.iter().find_map(|event| match &event.kind {
+        EventKind::Ranged { ranges } => Some(ranges[0].range_m),
+        _ => None,
+    });
+    let as_read = (stations[0].position - AT).norm() * (1.0 + SCALE) + OFFSETS_M[0];
+    assert!((ranged.unwrap() - as_read).abs() < 1e-6, "{ranged:?}, {as_read}");
 }

@@ -56,3 +56,14 @@ pub fn pulse_text(phase: PulsePhase, test: &PulseTest, stations: &[Station]) -> 
     let _ = write!(text, "{found}");
     text
 }
+
+/// What the change of the speed of sound between two tests means, as a sentence; `None` if the tests agree.
+pub fn change_text(before: &PulseTest, test: &PulseTest) -> Option<String> {
+    let change = test.change_since(before)?;
+    Some(format!(
+        "THE SPEED OF SOUND CHANGED: ranges became {:+.2} ± {:.2} % longer since the test before; check the temperature, \
+         and let the stations exchange pulses more often",
+        100.0 * change.value,
+        200.0 * change.sigma,
+    ))
+}

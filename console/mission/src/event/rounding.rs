@@ -11,7 +11,7 @@ use crate::{ask::Said, way_back::WayBack};
 use exploration::Column;
 use nalgebra::SMatrix;
 use planner_api::{Command, Drawing, Drive, PoseEstimate};
-use positioning::{Estimated, Exclusion, Fix, Ranging};
+use positioning::{Estimated, Exclusion, Fix, PulseError, Ranging};
 use world::{CableLies, Point, Pose, Shape};
 
 /// Rounding steps per unit.
@@ -161,15 +161,18 @@ impl EventKind {
             Self::Fixed { fix } => round_fix(fix),
             Self::Protected { level_m } => level_m.iter_mut().for_each(round),
             Self::ProtectionRegained { level_m } => round(level_m),
-            Self::SessionCalibrated { scale: both } | Self::StationBiased { bias_m: both, .. } => {
-                round_estimated(both);
+            Self::SessionCalibrated { scale, slip_correlation } => {
+                round_estimated(scale);
+                slip_correlation.iter_mut().for_each(round);
             }
+            Self::StationBiased { bias_m, .. } => round_estimated(bias_m),
             Self::NotSeparable { correlation } => round(correlation),
             Self::PulsesTested { test, .. } => {
                 let offsets = test.offsets_m.iter_mut().map(|(_, offset)| offset);
                 offsets.chain([&mut test.scale]).for_each(round_estimated);
                 round(&mut test.worst.2);
             }
+            Self::PulsesFailed { why: PulseError::Implausible { scale }, .. } => round(scale),
             Self::ClocksEstimated { offsets } => {
                 for offset in offsets {
                     round_estimated(&mut offset.offset_m);

@@ -4,7 +4,7 @@ use crate::{
     config::Locating,
     event::{EventKind, PulsePhase},
 };
-use positioning::{CommonError, Doubt, Integrity, Pulse, PulseSeries, PulseTest, RangeNoise, Timing};
+use positioning::{CommonError, Doubt, Pulse, PulseSeries, PulseTest, RangeNoise, Timing};
 use world::{PulseSet, RangeSet, Station};
 
 /// The pulse tests so far.
@@ -52,7 +52,7 @@ impl PulseTests {
             Ok(test) => test,
             Err(why) => return Some((EventKind::PulsesFailed { phase, why }, None)),
         };
-        let agrees = test.integrity != Integrity::Alarm;
+        let agrees = test.is_usable();
         if agrees && self.corrects {
             self.last = PulseSeries { tests: vec![(0.0, self.to_correct(&test))] };
         }

@@ -54,7 +54,9 @@ impl Session {
             News::Separable => EventKind::Separable,
         };
         let scale = self.calibration.scale();
-        [EventKind::SessionCalibrated { scale }].into_iter().chain(news.into_iter().map(event)).collect()
+        let slip_correlation = self.calibration.slip_correlation();
+        let calibrated = EventKind::SessionCalibrated { scale, slip_correlation };
+        [calibrated].into_iter().chain(news.into_iter().map(event)).collect()
     }
 
     /// Returns the ranges without their known errors.

@@ -8,16 +8,17 @@ use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 /// Information about a position without any range, per square metre: it keeps the equations solvable.
 const LEAST_INFORMATION: f64 = 1e-6;
 
-/// The index of a shared error: the scale, its drift, and one bias per station.
+/// The index of a shared error: the scale, its drift, the slip of the robot, and one bias per station.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Column(usize);
 
 impl Column {
     pub(super) const SCALE: Self = Self(0);
     pub(super) const DRIFT: Self = Self(1);
+    pub(super) const SLIP: Self = Self(2);
 
     pub(super) const fn bias(station: usize) -> Self {
-        Self(2 + station)
+        Self(3 + station)
     }
 }
 
@@ -39,6 +40,8 @@ pub(super) struct System {
     blocks: Vec<Block>,
     shared: DMatrix<f64>,
     right: DVector<f64>,
+    /// The information about each shared error that does not come from the fixes.
+    known: DVector<f64>,
 }
 
 /// The sums over the ranges of a fix that eliminate a length which all of them share.
@@ -83,7 +86,7 @@ impl Solved {
 
 impl System {
     pub(super) fn new(n_fixes: usize, n_stations: usize) -> Self {
-        let n = 2 + n_stations;
+        let Column(n) = Column::bias(n_stations);
         let block = Block {
             information: Matrix2::identity() * LEAST_INFORMATION,
             inverse: Matrix2::zeros(),
@@ -91,12 +94,14 @@ impl System {
             shared: vec![[0.0; 2]; n],
             link: 0.0,
         };
-        Self { blocks: vec![block; n_fixes], shared: DMatrix::zeros(n, n), right: DVector::zeros(n) }
+        let (shared, right, known) = (DMatrix::zeros(n, n), DVector::zeros(n), DVector::zeros(n));
+        Self { blocks: vec![block; n_fixes], shared, right, known }
     }
 
     /// Adds what is known about a shared error beforehand: it is near 0.
     pub(super) fn prior(&mut self, Column(column): Column, now: f64, sigma: f64) {
         self.shared[(column, column)] += sigma.powi(-2);
+        self.known[column] += sigma.powi(-2);
         self.right[column] -= now * sigma.powi(-2);
     }
 
@@ -147,13 +152,19 @@ impl System {
         self.shared -= shared * shared.transpose() / *weight;
     }
 
-    /// Adds the motion between a fix and the next one, by which the positions are `off`.
-    pub(super) fn link(&mut self, fix: usize, off: Vector2<f64>, weight: f64) {
+    /// Adds the motion between a fix and the next one, by which the positions are `off`. The robot slips by a share of
+    /// the measured motion.
+    pub(super) fn link(&mut self, fix: usize, (moved, off): (Vector2<f64>, Vector2<f64>), weight: f64) {
+        let Column(slip) = Column::SLIP;
         for (block, sign) in self.blocks[fix..=fix + 1].iter_mut().zip([1.0, -1.0]) {
             block.information += Matrix2::identity() * weight;
             block.right += off * (sign * weight);
+            block.shared[slip][0] -= sign * weight * moved.x;
+            block.shared[slip][1] -= sign * weight * moved.y;
         }
         self.blocks[fix].link = weight;
+        self.shared[(slip, slip)] += weight * moved.norm_squared();
+        self.right[slip] -= weight * moved.dot(&off);
     }
 
     /// Eliminates the positions.
@@ -206,6 +217,14 @@ impl System {
             after = *step;
         }
         steps
+    }
+
+    /// Correlation of two shared errors in the fixes, without what is known beforehand, 0 to 1. It is 0 if the fixes show
+    /// nothing of one of them, as of the slip of a robot at rest.
+    pub(super) fn correlation(&self, Column(one): Column, Column(other): Column) -> f64 {
+        let own = |column: usize| self.shared[(column, column)] - self.known[column];
+        let both = (own(one).max(0.0) * own(other).max(0.0)).sqrt();
+        if both > 0.0 { (self.shared[(one, other)].abs() / both).min(1.0) } else { 0.0 }
     }
 
     /// Tests one more shared error: its value and standard deviation beside the free `columns`, and its correlation with

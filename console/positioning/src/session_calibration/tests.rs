@@ -25,6 +25,10 @@ struct Run {
     news: Vec<(f64, News)>,
     /// Whether the time of each emission is unknown.
     is_free: bool,
+    /// The share by which the robot moves less than measured.
+    slip: f64,
+    /// Standard deviation of a range, metres.
+    sigma_m: f64,
 }
 
 impl Run {
@@ -47,6 +51,8 @@ impl Run {
             draws,
             news: Vec::new(),
             is_free: false,
+            slip: 0.0,
+            sigma_m: SIGMA_M,
         }
     }
 
@@ -56,12 +62,12 @@ impl Run {
     }
 
     fn sets(&mut self, scale: f64, biases_m: &[f64]) -> Vec<RangeSet> {
-        let draws = &mut self.draws;
+        let (draws, sigma_m) = (&mut self.draws, self.sigma_m);
         // The emission is up to 250 m of sound before the readings.
         let excess_m = if self.is_free { 150.0 + 100.0 * draws.even().abs() } else { 0.0 };
         let set = |(station, bias_m): (&Station, &f64)| {
             let range_m = ((self.at - station.position).norm() + excess_m) * (1.0 + scale) + bias_m;
-            RangeSet { station: station.id, ranges_m: vec![range_m + SIGMA_M * draws.bell()] }
+            RangeSet { station: station.id, ranges_m: vec![range_m + sigma_m * draws.bell()] }
         };
         self.stations.iter().zip(biases_m).map(set).collect()
     }
@@ -77,13 +83,13 @@ impl Run {
             self.at.x = self.at.x.clamp(-12.0, 12.0);
             self.heading_rad = std::f64::consts::PI - self.heading_rad;
             self.at.y += 0.5;
-            let aside = Odometry { forward_m: 0.5, ..Odometry::default() };
+            let aside = Odometry { forward_m: 0.5 / (1.0 - self.slip), ..Odometry::default() };
             self.calibration.predict(&aside, std::f64::consts::FRAC_PI_2);
         }
         let way = Vector::new(self.heading_rad.cos(), 0.0) * STEP_M;
         self.at += way;
-        let odometry =
-            Odometry { forward_m: STEP_M * (1.0 + 0.03 * self.draws.bell()), ..Odometry::default() };
+        let measured_m = STEP_M * (1.0 + 0.03 * self.draws.bell()) / (1.0 - self.slip);
+        let odometry = Odometry { forward_m: measured_m, ..Odometry::default() };
         self.calibration.predict(&odometry, self.heading_rad + 0.01 * self.draws.bell());
         self.t_s += 1.0;
     }
@@ -159,6 +165,43 @@ fn a_wrong_speed_of_sound_and_a_station_that_becomes_late_are_found_within_60_fi
     }
 }
 
+/// A robot that slips stretches its path as a wrong speed of sound does. The stated interval contains the true scale
+/// nevertheless: of 1000 seeds, 94.0 % from ranges and 94.1 % from differences.
+#[test]
+fn the_stated_error_of_the_scale_contains_a_slip_of_up_to_3_percent() {
+    for (begun, most_sigma) in [(Run::new as fn(SessionConfig, u32, u64) -> Run, 5e-4), (Run::free, 5e-3)] {
+        let (mut inside, mut sigmas) = (0, 0.0);
+        for seed in 0..200u32 {
+            let mut run = begun(SessionConfig::default(), 6, u64::from(66_000 + seed));
+            run.slip = 0.03 * f64::from(seed) / 200.0;
+            let scale = 0.02 * run.draws.even();
+            run.until(90.0, &|_| (scale, none()));
+            let found = run.calibration.scale();
+            inside += u32::from((found.value - scale).abs() < 1.96 * found.sigma);
+            sigmas += found.sigma / 200.0;
+        }
+        // Not won by wide intervals.
+        assert!(inside >= 186 && sigmas < most_sigma, "{inside} of 200, sigma {sigmas}");
+    }
+}
+
+/// Near the centre, differences show only the size of the path, which slip changes, too.
+#[test]
+fn a_speed_of_sound_that_cannot_be_told_from_slip_is_said() {
+    let correlation = |mut run: Run, (x, y), until_s| {
+        run.at = Point::new(x, y);
+        run.until(until_s, &|_| (0.02, none()));
+        (run.calibration.slip_correlation(), run.calibration.scale())
+    };
+    let config = SessionConfig::default();
+    let (near, scale) = correlation(Run::free(config, 6, 5), (-2.0, 0.0), 12.0);
+    assert!(near.is_some_and(|near| near > 0.95), "{near:?}");
+    // The stated error contains what the scenario allows for slip.
+    assert!(scale.sigma > 0.02 && (scale.value - 0.02).abs() < 2.0 * scale.sigma, "{scale:?}");
+    assert_eq!(correlation(Run::free(config, 6, 5), (-12.0, -10.0), 60.0).0, None);
+    assert_eq!(correlation(Run::new(config, 6, 5), (-2.0, 0.0), 12.0).0, None);
+}
+
 #[test]
 fn sound_stations_are_not_blamed_in_an_hour() {
     for (begun, seeds) in [(Run::new as fn(SessionConfig, u32, u64) -> Run, 0..10), (Run::free, 0..10)] {
@@ -230,6 +273,50 @@ fn three_stations_cannot_separate_a_bias_from_the_speed_of_sound() {
     }
     assert!(matches!(run.news[..], [(_, News::NotSeparable { correlation })] if correlation > 0.95));
     assert_eq!(run.biased(), []);
+}
+
+/// A session of a seed: 3 to 6 stations, at rest or on lanes; at rest, only the ranges of one place count.
+fn session(seed: u32, sigma_m: f64) -> Run {
+    let n = [3, 4, 5, 6][seed as usize % 4];
+    let is_free = n >= 5 && seed % 8 >= 4;
+    let begun = if is_free { Run::free } else { Run::new };
+    let mut run = begun(SessionConfig::default(), n, u64::from(77_000 + seed));
+    run.sigma_m = sigma_m;
+    run.at = run.draws.on_disc() * 1.5;
+    let last_s = 12.0 + 6.0 * f64::from(seed % 9);
+    while run.t_s < last_s {
+        if seed.is_multiple_of(3) {
+            run.t_s += 1.0;
+            let sets = run.sets(0.01, &none());
+            run.hear(&sets);
+        } else {
+            run.until(run.t_s + 1.0, &|_| (0.01, none()));
+        }
+    }
+    run
+}
+
+/// The largest correlation of a bias with the scale in the fixes that are kept.
+fn correlation(run: &mut Run) -> f64 {
+    let n = run.stations.len();
+    let fitted = run.calibration.window.fit(n, &[]).unwrap();
+    fitted.tests.iter().flatten().map(|test| test.correlation).fold(0.0, f64::max)
+}
+
+/// The design's figures: every session with a correlation above 0.95 is said to be not separable, and at most 2 % of those
+/// below 0.80. The true correlation is that of the same session without noise.
+#[test]
+fn sessions_are_said_to_be_not_separable_where_they_are() {
+    let (mut above, mut below, mut said_below) = (0, 0, 0);
+    for seed in 0..300 {
+        let (true_correlation, run) = (correlation(&mut session(seed, 1e-6)), session(seed, SIGMA_M));
+        let is_said = !run.calibration.is_separable;
+        above += u32::from(true_correlation > 0.95);
+        assert!(is_said || true_correlation <= 0.95, "{seed}: {true_correlation}");
+        below += u32::from(true_correlation < 0.8);
+        said_below += u32::from(true_correlation < 0.8 && is_said);
+    }
+    assert!(above >= 20 && below >= 100 && 50 * said_below <= below, "{above}, {said_below} of {below}");
 }
 
 /// The ranges that a run receives.

@@ -12,6 +12,8 @@ use world::{Point, Vector};
 pub(super) const SCALE_SIGMA: f64 = 0.03;
 /// Standard deviation of the change of the speed of sound, as a share per hour.
 const DRIFT_SIGMA: f64 = 0.02;
+/// Least standard deviation of the slip before any fix, as a share; keeps the equations solvable.
+const LEAST_SLIP_SIGMA: f64 = 1e-4;
 /// Standard deviation of a bias before any fix, metres.
 const BIAS_SIGMA_M: f64 = 10.0;
 /// Standard deviation of the motion between two fixes, beside that of odometry, metres.
@@ -162,6 +164,8 @@ pub(super) struct Test {
 pub(super) struct Fitted {
     /// At the last fix.
     pub scale: Estimated,
+    /// Correlation of the scale with the slip of the robot, 0 to 1.
+    pub slip_correlation: f64,
     /// The biases of the active stations, by the index of the station.
     pub biases_m: Vec<(usize, Estimated)>,
     /// For each station that is not active.
@@ -177,14 +181,27 @@ pub(super) struct Window {
     scale: f64,
     /// Change of the scale, per hour.
     drift: f64,
+    /// The share by which the robot moves less than measured, and its standard deviation before any fix.
+    slip: f64,
+    slip_sigma: f64,
     /// Sizes of the active biases, metres, with the times from which they count, by station.
     biases: Vec<Option<(f64, f64)>>,
 }
 
 impl Window {
-    pub(super) fn new(most: usize, is_linear: bool) -> Self {
-        let nodes = VecDeque::with_capacity(most + 1);
-        Self { most: most.max(1), is_linear, nodes, scale: 0.0, drift: 0.0, biases: Vec::new() }
+    /// A window of at most `most` fixes. `slip_sigma` is the standard deviation of the share by which the robot moves less
+    /// than measured.
+    pub(super) fn new(most: usize, is_linear: bool, slip_sigma: f64) -> Self {
+        Self {
+            most: most.max(1),
+            is_linear,
+            nodes: VecDeque::with_capacity(most + 1),
+            scale: 0.0,
+            drift: 0.0,
+            slip: 0.0,
+            slip_sigma: slip_sigma.max(LEAST_SLIP_SIGMA),
+            biases: Vec::new(),
+        }
     }
 
     pub(super) fn len(&self) -> usize {
@@ -216,7 +233,7 @@ impl Window {
             let bias_m = before.get(*station).copied().flatten().map_or(0.0, |(bias_m, _)| bias_m);
             self.biases[*station] = Some((bias_m, *from_s));
         }
-        let mut columns = vec![Column::SCALE];
+        let mut columns = vec![Column::SCALE, Column::SLIP];
         columns.extend(self.is_linear.then_some(Column::DRIFT));
         columns.extend(active.iter().map(|(station, _)| Column::bias(*station)));
         let mut found = None;
@@ -230,7 +247,8 @@ impl Window {
                 node.at += step;
             }
             self.scale += solved.step[0];
-            self.drift += if self.is_linear { solved.step[1] } else { 0.0 };
+            self.slip += solved.step[1];
+            self.drift += if self.is_linear { solved.step[2] } else { 0.0 };
             let first = columns.len() - active.len();
             for ((station, _), step) in active.iter().zip(solved.step.iter().skip(first)) {
                 self.biases[*station].iter_mut().for_each(|(bias_m, _)| *bias_m += step);
@@ -252,6 +270,7 @@ impl Window {
         };
         let fitted = Fitted {
             scale: Estimated { value: self.scale, sigma: solved.sigma(0) },
+            slip_correlation: system.correlation(Column::SCALE, Column::SLIP),
             biases_m: active.iter().enumerate().filter_map(bias).collect(),
             tests: (0..n_stations).map(test).collect(),
         };
@@ -259,9 +278,10 @@ impl Window {
             node.at.iter().all(|number| number.is_finite()) && node.excess_m.is_none_or(f64::is_finite)
         };
         let is_sound = self.nodes.iter().all(is_finite);
-        if !(is_sound && self.scale.is_finite() && self.drift.is_finite()) {
+        let shared = [self.scale, self.drift, self.slip];
+        if !(is_sound && shared.iter().all(|number| number.is_finite())) {
             // The next fixes begin again.
-            *self = Self::new(self.most, self.is_linear);
+            *self = Self::new(self.most, self.is_linear, self.slip_sigma);
             return None;
         }
         Some(fitted)
@@ -300,6 +320,7 @@ impl Window {
         let mut system = System::new(self.nodes.len(), self.biases.len());
         system.prior(Column::SCALE, self.scale, SCALE_SIGMA);
         system.prior(Column::DRIFT, self.drift, DRIFT_SIGMA);
+        system.prior(Column::SLIP, self.slip, self.slip_sigma);
         for (station, bias) in self.biases.iter().enumerate() {
             system.prior(Column::bias(station), bias.map_or(0.0, |(bias_m, _)| bias_m), BIAS_SIGMA_M);
         }
@@ -321,8 +342,8 @@ impl Window {
             }
         }
         for (index, (before, node)) in self.nodes.iter().zip(self.nodes.iter().skip(1)).enumerate() {
-            let off = node.at - before.at - node.moved;
-            system.link(index, off, weight(off.norm(), node.moved_sigma_m));
+            let off = node.at - before.at - node.moved * (1.0 - self.slip);
+            system.link(index, (node.moved, off), weight(off.norm(), node.moved_sigma_m));
         }
         system
     }

@@ -6,7 +6,7 @@ use crate::{
     draws::{Draws, ring},
 };
 use proptest::prelude::*;
-use world::{Odometry, Pose, RangeSet};
+use world::{Boundary, Odometry, Pose, RangeSet};
 
 const SIGMA_M: f64 = 0.05;
 const RADIUS_M: f64 = 10.0;
@@ -258,5 +258,25 @@ proptest! {
         for ((_, a), (_, b)) in a.offsets_m().zip(b.offsets_m()) {
             prop_assert!((a.value - b.value).abs() < 1e-6 && (a.sigma - b.sigma).abs() < 1e-9);
         }
+    }
+}
+
+/// Differences between clocks that are larger than the tank do not make ranges impossible.
+#[test]
+fn clocks_that_are_20_m_apart_cost_no_station_inside_a_wall() {
+    for seed in 0..10 {
+        let mut run = Run::new(6, 9_100 + seed);
+        run.offsets_m.iter_mut().for_each(|offset_m| *offset_m *= 20.0 / 3.0);
+        run.config.clocks = Some(ClockConfig { offset_sigma_m: 20.0, drift_sigma_m_per_tick: 1e-4 });
+        run.config.boundary = Some(Boundary::Circle { radius_m: RADIUS_M });
+        (run.whole, run.guard) =
+            (Positioner::new(run.config.clone()), Guard::new(&run.config, Risk::default()));
+        for _ in 0..100 {
+            run.drive();
+            let sets = run.sets(&[]);
+            let result = run.whole.cycle(&sets);
+            assert!(result.impossible.is_empty() && result.fix.is_ok(), "{seed}: {result:?}");
+        }
+        assert!(run.error_m() < 0.3, "{seed}: {}", run.error_m());
     }
 }

@@ -3,11 +3,12 @@
 use super::*;
 use vehicle::wire::{
     Misfit,
-    message::{Ae, Has, Limits, MotionKind, Pong, Pose, StationRanges, Tether},
+    message::{Ae, Has, Limits, MotionKind, Pong, Pose, PulseLengths, StationRanges, Tether},
 };
 
 fn inbox() -> Inbox {
-    let mut inbox = Inbox::new([("A".to_owned(), StationId(1))].into(), "run:robot".into());
+    let stations = [("A".to_owned(), StationId(1)), ("B".to_owned(), StationId(2))];
+    let mut inbox = Inbox::new(stations.into(), "run:robot".into());
     inbox.take(hello(), 0.0);
     inbox.take(ready(), 0.0);
     inbox.has_answered = true;
@@ -115,6 +116,25 @@ fn readings_keep_the_last_cycle_the_contact_and_the_tether() {
     );
     assert_eq!((sensed.contact, sensed.paid_out_m), (true, Some(3.5)));
     assert!(!inbox.sense(0.3).readings.contact);
+}
+
+#[test]
+fn pulses_of_all_messages_of_a_tick_are_kept_by_station() {
+    let mut inbox = inbox();
+    let pulses = |sender: &str, receiver: &str| PulseLengths {
+        sender: sender.into(),
+        receiver: receiver.into(),
+        lengths_m: vec![8.1, 8.2],
+    };
+    let first = vec![pulses("A", "unknown"), pulses("A", "B")];
+    say(&mut inbox, Readings { pulses: first, ..moved(1, 0.0, 0.0) }, 0.1);
+    say(&mut inbox, Readings { pulses: vec![pulses("B", "A")], ..moved(2, 0.0, 0.0) }, 0.15);
+    let sensed = inbox.sense(0.2).readings;
+    let pairs: Vec<_> =
+        sensed.pulses.iter().map(|set| (set.sender, set.receiver, set.lengths_m.len())).collect();
+    assert_eq!(pairs, [(StationId(1), StationId(2), 2), (StationId(2), StationId(1), 2)]);
+    // Pulses are no ranging cycle of the robot.
+    assert!(!sensed.ranging_cycle && inbox.sense(0.3).readings.pulses.is_empty());
 }
 
 #[test]

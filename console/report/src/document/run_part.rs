@@ -7,10 +7,14 @@ use crate::{
     record::{Incident, StationRecord},
 };
 use account::{Accuracy, Positioning, Summary, TakenBack, Tether};
-use mission::{Outcome, event::pulse_text};
-use positioning::Integrity;
+use mission::{
+    Outcome,
+    event::{PulsePhase, change_text, pulse_text},
+};
+use positioning::{Integrity, PulseError, PulseTest};
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use world::Station;
 
 /// The recovery of a run that its recording process did not close. The digests in the report identify the files of the run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -214,24 +218,37 @@ impl RunPart {
             taken_back: summary.taken_back.clone(),
             tether: tether(past, summary),
             stations: record.stations(),
-            pulse_tests: record
-                .pulses
-                .iter()
-                .map(|(phase, test)| match test {
-                    Ok(test) => PulseRecord {
-                        found: pulse_text(*phase, test, &run.world.stations),
-                        agrees: matches!(test.integrity, Integrity::Ok | Integrity::Suspect),
-                    },
-                    Err(why) => PulseRecord {
-                        found: format!("pulse test {} failed: {why}", phase.words()),
-                        agrees: false,
-                    },
-                })
-                .collect(),
+            pulse_tests: pulse_records(&record.pulses, &run.world.stations),
             incidents: record.incidents(),
             files: past.files.clone(),
         })
     }
+}
+
+/// The pulse tests as sentences, each with the change of the speed of sound since the usable one before it.
+fn pulse_records(
+    tests: &[(PulsePhase, Result<PulseTest, PulseError>)],
+    stations: &[Station],
+) -> Vec<PulseRecord> {
+    let mut before = None;
+    let mut record = |(phase, test): &(PulsePhase, Result<PulseTest, PulseError>)| {
+        let test = match test {
+            Ok(test) => test,
+            Err(why) => {
+                let found = format!("pulse test {} failed: {why}", phase.words());
+                return PulseRecord { found, agrees: false };
+            }
+        };
+        let mut found = pulse_text(*phase, test, stations);
+        if test.is_usable() {
+            let change = before.replace(test.clone()).and_then(|before| change_text(&before, test));
+            if let Some(change) = change {
+                found = format!("{found}; {change}");
+            }
+        }
+        PulseRecord { found, agrees: matches!(test.integrity, Integrity::Ok | Integrity::Suspect) }
+    };
+    tests.iter().map(&mut record).collect()
 }
 
 fn plainly(value: &mission::ParamValue) -> String {

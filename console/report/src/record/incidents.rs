@@ -1,7 +1,7 @@
 //! The incidents of a run, for people; alarms and holds have a start and an end.
 
 use mission::{Event, EventKind, LogLine, Order, Severity};
-use positioning::Integrity;
+use positioning::{Exclusion, Integrity};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use vehicle::port::{LinkState, Notice};
@@ -160,13 +160,15 @@ fn sort(kind: &EventKind) -> Option<Sorted> {
         EventKind::Planned { .. } | EventKind::Certified { .. } | EventKind::ReturnBegan { .. } => {
             ("plan", None, None)
         }
-        EventKind::StationRejected { station, .. } => {
+        // Of a bias, its own incident tells.
+        EventKind::StationRejected { station, reason } if !matches!(reason, Exclusion::Biased { .. }) => {
             ("station", key(&format!("station {}", station.0)), None)
         }
         EventKind::StationRestored { station } => ("", None, key(&format!("station {}", station.0))),
         EventKind::Ordered { order } => return is_listed(order).then_some(("order", None, None)),
         EventKind::Ended { .. } => ("end", None, None),
         EventKind::RunOpened(_)
+        | EventKind::StationRejected { .. }
         | EventKind::OrderRefused { .. }
         | EventKind::TetherTruth { .. }
         | EventKind::Tethered { .. }

@@ -20,10 +20,12 @@ const CLOCK_KEYS: [&str; 2] = ["clock_offset_sigma_m", "clock_drift_sigma_m_per_
 
 /// Reads the true times of emission and clocks.
 pub(super) fn true_clocks(section: &Section<'_>) -> Option<Clocks> {
-    let is_emission_unknown = section.word("emission_time") == Some("unknown");
+    // A word that is misspelt has its own message; the other keys are not judged by it.
+    let emission_time = section.word("emission_time");
+    let is_emission_unknown = emission_time == Some("unknown");
     let (offset_sigma_m, drift_sigma_m_per_h) =
         (section.number(CLOCK_KEYS[0]), section.number(CLOCK_KEYS[1]));
-    if !is_emission_unknown {
+    if emission_time == Some("known") {
         section.refuse(&CLOCK_KEYS, "emission_time = \"known\"");
     }
     Some(Clocks {

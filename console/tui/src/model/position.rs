@@ -26,6 +26,9 @@ pub struct Position {
     /// The share by which all ranges are too long; `None` if the mission does not estimate it.
     #[serde(default)]
     pub scale: Option<positioning::Estimated>,
+    /// Whether the fixes cannot tell this share from the slip of the robot.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_slip_possible: bool,
     /// The clocks of the stations; empty if they share one clock.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub clocks: Vec<mission::ClockOffset>,

@@ -48,7 +48,9 @@ fn wide_lines(look: &Look, inner: Rect) -> Vec<(u8, Line<'static>)> {
         (4, curve(look, columns)),
     ];
     if let Some(scale) = run.position.scale {
-        let words = format!("{:+.2} % ±{:.2} %", 100.0 * scale.value, 200.0 * scale.sigma);
+        let (value, sigma) = (100.0 * scale.value, 200.0 * scale.sigma);
+        let slip = if run.position.is_slip_possible { ", or slip" } else { "" };
+        let words = format!("{value:+.2} % ±{sigma:.2} %{slip}");
         lines.push((2, row("all ranges", (Role::Text, words))));
     }
     // The least known clock counts, because it limits the accuracy of every fix that uses it.

@@ -13,7 +13,8 @@ use world::{Point, StationId};
 
 fn in_doubt() -> InDoubt {
     let station = "S2".into();
-    let floor = TakenBack { station, bias_m: 0.15, since_s: 540.0, until_s: 633.0, area_m2: 41.87 };
+    let floor =
+        TakenBack { station, bias_m: 0.15, since_s: 540.0, until_s: 633.0, area_m2: 41.87, left_m2: None };
     InDoubt { floor, at: Some(Point::new(3.2, -1.5)) }
 }
 

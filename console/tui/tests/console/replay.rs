@@ -65,6 +65,7 @@ fn summary(share: f64, path_m: f64) -> Box<Summary> {
         overlap: Some(0.17),
         missed_area_m2: Some(1.5),
         by_truth: None,
+        taken_back: None,
     };
     Box::new(Summary { coverage: Some(coverage), path_length_m: Some(path_m), ..fold.summary() })
 }

@@ -3,7 +3,8 @@
 use super::{
     PROTOCOL,
     message::{
-        Ae, Channel, Drive, Hello, Limits, Odometry, Outline, Pong, Pose, Readings, Scan, State, Tether,
+        Ae, Channel, Drive, Hello, Limits, Odometry, Outline, Pong, Pose, PulseLengths, Readings, Scan,
+        State, Tether,
     },
 };
 use std::{fmt, ops::RangeInclusive};
@@ -14,6 +15,8 @@ const NAME_MAX: usize = 64;
 const TEXT_MAX: usize = 200;
 const ENTRIES_MAX: usize = 64;
 const RANGES_MAX: usize = 1000;
+/// Each of 64 stations sends, and the others hear.
+const PULSES_MAX: usize = ENTRIES_MAX * (ENTRIES_MAX - 1);
 const RAYS_MAX: usize = 4096;
 const OUTLINES_MAX: usize = 1000;
 /// The most channels of an instrument.
@@ -116,6 +119,8 @@ impl Readings {
         self.odometry.as_ref().map_or(Ok(()), Odometry::check)?;
         self.pose.as_ref().map_or(Ok(()), Pose::check)?;
         self.ae.as_ref().map_or(Ok(()), Ae::check)?;
+        at_most("readings.pulses", self.pulses.len(), PULSES_MAX)?;
+        self.pulses.iter().enumerate().try_for_each(|(at, pulses)| pulses.check(at))?;
         self.scan.as_ref().map_or(Ok(()), Scan::check)?;
         self.tether.as_ref().map_or(Ok(()), Tether::check)?;
         self.pressure_pa.map_or(Ok(()), |pascals| within("readings.pressure_pa", pascals, -1e8..=1e8))?;
@@ -173,6 +178,22 @@ impl Ae {
             name(&field("station"), &of.station)?;
             name(&field("reference"), &of.reference)?;
             within(&field("tdoa_s"), of.tdoa_s, -1.0..=1.0)?;
+        }
+        Ok(())
+    }
+}
+
+impl PulseLengths {
+    fn check(&self, at: usize) -> Checked {
+        let field = |part: &str| format!("readings.pulses[{at}].{part}");
+        name(&field("sender"), &self.sender)?;
+        name(&field("receiver"), &self.receiver)?;
+        if self.sender == self.receiver {
+            return misfit(field("receiver"), format!("station {} cannot hear itself", self.sender));
+        }
+        at_most(&field("lengths_m"), self.lengths_m.len(), RANGES_MAX)?;
+        for (k, length_m) in self.lengths_m.iter().enumerate() {
+            within(&field(&format!("lengths_m[{k}]")), *length_m, -1000.0..=1000.0)?;
         }
         Ok(())
     }

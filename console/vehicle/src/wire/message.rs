@@ -157,6 +157,10 @@ pub struct Readings {
     /// The result of a cycle of acoustic ranging that ended with these readings, with or without ranges.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ae: Option<Ae>,
+    /// The pulses that the stations exchanged, each as another station heard it, by the names of the scenario's stations:
+    /// at most 4032.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pulses: Vec<PulseLengths>,
     /// A scan of the surroundings.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scan: Option<Scan>,
@@ -227,6 +231,18 @@ pub struct StationRanges {
     pub station: String,
     /// One distance per repetition, metres, each greater than 0 and at most 1000: at most 1000 distances.
     pub ranges_m: Vec<f64>,
+}
+
+/// The pulses of a station that another one heard.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PulseLengths {
+    /// Name of the station that sent.
+    pub sender: String,
+    /// Name of the station that heard.
+    pub receiver: String,
+    /// For each repetition, the time from sending to arrival, each by the clock of its station, times the assumed speed of
+    /// sound, metres: at most 1000 lengths, each from -1000 to 1000, because the clocks may differ.
+    pub lengths_m: Vec<f64>,
 }
 
 /// A time of arrival at a station.

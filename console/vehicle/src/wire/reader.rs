@@ -7,7 +7,8 @@ use super::{
     lines::{Lines, Piece},
     message::{
         Ae, Arrival, Bye, Channel, Commander, Difference, Drive, FromVehicle, Has, Hello, Limits, Mode,
-        Odometry, Outline, Ping, Pong, Pose, Readings, Scan, State, StationRanges, Stop, Tether, ToVehicle,
+        Odometry, Outline, Ping, Pong, Pose, PulseLengths, Readings, Scan, State, StationRanges, Stop,
+        Tether, ToVehicle,
     },
     path::{field_at, keys},
     session::{FromSession, ToSession},
@@ -326,6 +327,7 @@ impl Incoming for FromVehicle {
             fields_of::<Pose>(),
             fields_of::<Ae>(),
             fields_of::<StationRanges>(),
+            fields_of::<PulseLengths>(),
             fields_of::<Arrival>(),
             fields_of::<Difference>(),
             fields_of::<Scan>(),

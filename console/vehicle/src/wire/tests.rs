@@ -125,6 +125,14 @@ fn a_wrong_line_is_named_by_its_field() {
             "readings.scan.ranges_m[3]: 9 is not between 0 and 8",
         ),
         (
+            readings(r#""pulses": [{"sender": "A", "receiver": "A", "lengths_m": [1]}]"#),
+            "readings.pulses[0].receiver: station A cannot hear itself",
+        ),
+        (
+            readings(r#""pulses": [{"sender": "A", "receiver": "B", "lengths_m": [1, 1e308]}]"#),
+            "readings.pulses[0].lengths_m[1]: 1e308 is not between -1000 and 1000",
+        ),
+        (
             readings(r#""ae": {"ranges": [{"station": "A", "ranges_m": [1, -2]}]}"#),
             "readings.ae.ranges[0].ranges_m[1]: -2 is out of range: greater than 0 and at most 1000 is allowed",
         ),

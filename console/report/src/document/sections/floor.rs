@@ -215,6 +215,9 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
     ];
     let taken_back = document.runs.iter().flat_map(|run| &run.taken_back);
     blocks.extend(taken_back.map(|floor| Block::Text(format!("Guarantee taken back: {floor}."))));
+    // The text above states the share of a single run.
+    let all_runs = document.coverage.taken_back.filter(|_| document.runs.len() > 1);
+    blocks.extend(all_runs.map(|floor| Block::Text(format!("All runs together: {floor}."))));
     blocks.extend(truth);
     blocks
 }

@@ -3,7 +3,7 @@
 use crate::model::{Cause, Change, Run, Withdrawn, position};
 use mission::{Channels, Event, EventKind, Passage, Severity};
 use planner_api::PoseEstimate;
-use positioning::Integrity;
+use positioning::{Exclusion, Integrity};
 use world::Pose;
 
 impl Run {
@@ -19,9 +19,12 @@ impl Run {
                 self.position.failure = Some(error.to_string());
                 self.raise(event, Cause::NoFix, Severity::Watch, format!("no fix: {error}"));
             }
-            EventKind::StationRejected { station, .. } => {
+            EventKind::StationRejected { station, reason } => {
                 *self.position.rejections.entry(*station).or_default() += 1;
-                self.raise_as_logged(event, Cause::Station(*station));
+                // The alarm about the bias says so already.
+                if !matches!(reason, Exclusion::Biased { .. }) {
+                    self.raise_as_logged(event, Cause::Station(*station));
+                }
             }
             EventKind::StationRestored { station } => self.clear(&Cause::Station(*station)),
             EventKind::Estimated { pose } => {
@@ -32,7 +35,10 @@ impl Run {
             EventKind::Protected { level_m } => self.position.protection = Some(*level_m),
             EventKind::ProtectionLost { .. } => self.raise_as_logged(event, Cause::NotProtected),
             EventKind::ProtectionRegained { .. } => self.clear(&Cause::NotProtected),
-            EventKind::SessionCalibrated { scale } => self.position.scale = Some(*scale),
+            EventKind::SessionCalibrated { scale, slip_correlation } => {
+                (self.position.scale, self.position.is_slip_possible) =
+                    (Some(*scale), slip_correlation.is_some());
+            }
             EventKind::ClocksEstimated { offsets } => self.position.clocks.clone_from(offsets),
             EventKind::PulsesTested { phase, test } => {
                 self.position.pulses = Some(Ok((*phase, test.clone())));
@@ -46,7 +52,10 @@ impl Run {
                 self.position.pulses = Some(Err(why.to_string()));
                 self.raise_as_logged(event, Cause::Pulses);
             }
-            EventKind::StationBiased { station, .. } => self.raise_as_logged(event, Cause::Bias(*station)),
+            EventKind::StationBiased { station, .. } => {
+                self.clear(&Cause::Station(*station));
+                self.raise_as_logged(event, Cause::Bias(*station));
+            }
             EventKind::StationUnbiased { station } => self.clear(&Cause::Bias(*station)),
             EventKind::NotSeparable { .. } => self.raise_as_logged(event, Cause::NotSeparable),
             EventKind::Separable => self.clear(&Cause::NotSeparable),
