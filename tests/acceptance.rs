@@ -91,8 +91,10 @@ mod shift;
 #[path = "acceptance/signing.rs"]
 mod signing;
 #[cfg(target_os = "linux")]
-#[path = "acceptance/slurm.rs"]
+#[path = "acceptance/slow_line.rs"]
 mod slow_line;
+#[cfg(target_os = "linux")]
+#[path = "acceptance/slurm.rs"]
 mod slurm;
 #[path = "acceptance/stopping.rs"]
 mod stopping;

@@ -56,7 +56,7 @@ impl Tether {
     fn load(&self, cable: &Cable) -> Load {
         let [reel_n, robot_n] = self.config.reel.map_or([0.0; 2], |reel| {
             let drag = reel.drag(self.config.friction);
-            [cable.pull_at_anchor_n(drag), cable.pull_at_robot_n(drag, reel.pay_out_n)]
+            [cable.pull_at_anchor_n(drag), cable.pull_at_robot_n(drag, reel.paying_out_n())]
         });
         Load([cable.length_m(), cable.wrap_max_rad(), cable.wrap_total_rad(), reel_n, robot_n])
     }

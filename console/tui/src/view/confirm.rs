@@ -12,7 +12,6 @@ use crate::model::zone_draft::Form;
 use crate::model::{LineEdit, Model, Offer, Overlay, Shadow, log::clock};
 use crate::theme::Role;
 use crate::update::zones;
-use account::Resumption;
 use mission::{Hold, HoldReason, Phase, WayBack};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -131,7 +130,7 @@ fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
             ]
             .into_iter()
             .chain(stands(model))
-            .chain(model.live.left_out().and_then(|left_out| left_out.resumption).map(|at| resumes(&at)))
+            .chain(begins(model))
             .collect()
         }
         Overlay::Confirm(Ask::Resume) => {
@@ -243,13 +242,17 @@ fn stands(model: &Model) -> Option<String> {
     Some(format!("The robot {}.", model.must_stand()?))
 }
 
-/// Where the plan of a re-scan begins to scan, and what it scans a second time, as a sentence.
-pub(super) fn resumes(resumption: &Resumption) -> String {
-    let (after_m, again_m2) = (text::number(resumption.after_m, 1), text::number(resumption.again_m2, 1));
-    format!(
-        "The scan resumes at {}, after {after_m} m; {again_m2} m² are scanned a second time.",
-        text::place(resumption.at)
-    )
+/// Where a plan for a part of the floor begins to scan, and what it scans besides: of a re-scan, for the second time. As a
+/// sentence; `None` for a plan for the whole floor.
+pub(super) fn begins(model: &Model) -> Option<String> {
+    let resumption = model.live.left_out()?.resumption?;
+    let (at, again_m2) = (text::place(resumption.at), text::number(resumption.again_m2, 1));
+    let after_m = text::number(resumption.after_m, 1);
+    Some(if model.live.scanned_before.is_some() {
+        format!("The scan resumes at {at}, after {after_m} m; {again_m2} m² are scanned a second time.")
+    } else {
+        format!("The scan begins at {at}, after {after_m} m; {again_m2} m² that were not requested are scanned, too.")
+    })
 }
 
 /// Who drives a robot that resumes, and along which plan, as a sentence.

@@ -47,7 +47,7 @@ fn summary(look: &Look, survey: &Survey, columns: usize) -> Vec<(u8, Line<'stati
         vec![(0, look.line([bar, (Role::Text, format!(" {share} % explored"))]))]
     };
     let mut lines = explored;
-    lines.push(row(1, "frontiers", frontiers(survey, here, room)));
+    lines.push(row(1, "frontiers", frontiers(survey, room)));
     lines.push(row(2, "way", way(look, survey, here, room)));
     let beyond = survey.way.as_ref().map_or(0, |way| way.beyond_tether);
     if beyond > 0 {
@@ -67,17 +67,14 @@ fn summary(look: &Look, survey: &Survey, columns: usize) -> Vec<(u8, Line<'stati
     lines
 }
 
-/// The number of frontiers, and the nearest one.
-fn frontiers(survey: &Survey, here: Option<Point>, room: usize) -> String {
-    let n = survey.frontiers.len();
-    let Some(nearest) = survey.frontiers.first() else { return "none left".into() };
-    if survey.share.is_none() {
-        return "-".into();
+/// The number of frontiers. The one to which the robot drives is at the end of its way.
+fn frontiers(survey: &Survey, room: usize) -> String {
+    match survey.frontiers.len() {
+        // Before the first way, the scans have not been searched for frontiers.
+        0 if survey.way.is_none() => text::wording(["not known yet".to_owned(), "-".to_owned()], room),
+        0 => "none left".into(),
+        n => n.to_string(),
     }
-    let at = text::place(*nearest);
-    let away = here
-        .map_or_else(String::new, |here| format!(", {} m away", text::number((nearest - here).norm(), 1)));
-    text::wording([format!("{n}, next {at}{away}"), format!("{n}, next {at}"), n.to_string()], room)
 }
 
 /// What is left of the way, and where it leads.

@@ -28,7 +28,8 @@ pub struct Reel {
     pub floor_friction: f64,
     /// Pull with which the reel takes the cable up, newtons.
     pub pull_n: f64,
-    /// Pull that is needed at the reel to pay the cable out, newtons.
+    /// Drag of the reel itself while it pays the cable out, newtons. The reel keeps its own pull as well: see
+    /// [`Reel::paying_out_n`].
     pub pay_out_n: f64,
     /// Largest pull of the robot on its cable, newtons; `None` if it is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -48,13 +49,19 @@ impl Reel {
         self.pull_ratio_max * self.pull_n
     }
 
+    /// Returns the pull that draws the cable off the reel, newtons: a reel that takes slack up keeps pulling while the robot
+    /// drives away.
+    pub fn paying_out_n(&self) -> f64 {
+        self.pull_n.max(self.pay_out_n)
+    }
+
     /// Returns the limits of a path, with the coefficient of friction of the cable on everything except the floor.
     pub fn limits(&self, friction: f64) -> PullLimits {
         PullLimits {
             drag: self.drag(friction),
             reel_n: self.pull_n,
             preferred_n: self.preferred_n(),
-            pay_out_n: self.pay_out_n,
+            pay_out_n: self.paying_out_n(),
             robot_n: self.robot_pull_n,
         }
     }

@@ -144,18 +144,12 @@ fn ready(look: &Look, is_complete: bool) -> (Role, String) {
     (role, words)
 }
 
-/// Where a plan for a part of the floor begins to scan, and what it scans besides: of a re-scan, for the second time.
+/// Where a plan for a part of the floor begins to scan, beside its mark on the map.
 fn resumption(look: &Look) -> Option<String> {
-    let resumption = look.model.live.left_out()?.resumption?;
-    if look.model.live.scanned_before.is_some() {
-        let resumes = text::capitalized(&confirm::resumes(&resumption));
-        return Some(format!("R {resumes} Missed areas that are small or out of reach are not requested."));
-    }
-    let (at, again_m2) = (text::place(resumption.at), text::number(resumption.again_m2, 1));
-    let after_m = text::number(resumption.after_m, 1);
-    Some(format!(
-        "R The scan begins at {at}, after {after_m} m; {again_m2} m² that were not requested are scanned, too."
-    ))
+    let begins = confirm::begins(look.model)?;
+    let of_rescan = look.model.live.scanned_before.is_some();
+    let not_requested = " Missed areas that are small or out of reach are not requested.";
+    Some(format!("R {begins}{}", if of_rescan { not_requested } else { "" }))
 }
 
 fn certificate(look: &Look, columns: usize) -> Option<(Role, String)> {
