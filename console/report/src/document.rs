@@ -8,6 +8,7 @@ mod decision;
 mod decisions;
 pub mod dxf;
 mod follow_up;
+mod found;
 mod gate;
 pub mod geojson;
 pub mod grid;
