@@ -91,7 +91,7 @@ pub(crate) fn contradiction(
 ) -> Option<String> {
     of_floor(facts, flown).or_else(|| {
         let (stated_mm, sampled_mm) = (facts.nominal_thickness_mm?, sampled_mm?);
-        (stated_mm != sampled_mm).then(|| {
+        ((stated_mm - sampled_mm).abs() > 1e-9).then(|| {
             format!(
                 "nominal_thickness_mm is {stated_mm}, but instrument.thickness_mm, from which every loss was computed, \
                  is {sampled_mm} in the scenario of the run"
