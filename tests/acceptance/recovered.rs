@@ -199,6 +199,32 @@ fn a_run_whose_recording_was_not_closed_is_made_whole_from_its_journal() {
 }
 
 #[test]
+fn a_report_that_goes_beyond_the_journal_is_kept_by_a_recovery() {
+    let bench = Bench::new();
+    let run = killed(&bench);
+    // The disk was full for the journal, but the report was written to the space reserved for it.
+    let report = fs::read_to_string(bench.path().join("kept.json")).unwrap();
+    let mut report: serde_json::Value = serde_json::from_str(&report).unwrap();
+    report["logs"]["error"] = "No space left on device (os error 28)".into();
+    for key in ["events_sha256", "recording_sha256"] {
+        report[key] = serde_json::Value::Null;
+    }
+    write_sealed(&run, &mut report);
+    let before = fs::read(run.join("report.json")).unwrap();
+    let text = journal_text(&run);
+    let end = text.match_indices('\n').nth(59).unwrap().0 + 1;
+    change_journal(&run, &text[..end]);
+    let closed = recover(&bench, &run);
+    assert!(
+        closed.code == Some(0) && closed.out.contains("kept as report-before-recovery.json"),
+        "{closed:?}"
+    );
+    assert_eq!(fs::read(run.join("report-before-recovery.json")).unwrap(), before);
+    let verified = bench.verify(&run, &["--from-journal"]);
+    assert_eq!(verified.code, Some(0), "{verified:?}");
+}
+
+#[test]
 fn a_run_that_is_being_written_or_was_closed_is_not_recovered() {
     let bench = Bench::new();
     let run = killed(&bench);

@@ -168,3 +168,30 @@ fn surveys_with_changed_files_are_refused_and_a_missing_file_is_named() {
     assert!(refused.code == Some(2) && refused.err.contains("a different journal"), "{refused:?}");
     assert!(!bench.path().join("changed.html").exists() && !bench.path().join("journal.html").exists());
 }
+
+#[test]
+fn a_survey_that_was_not_closed_is_refused_and_one_that_was_cut_off_is_named() {
+    let bench = Bench::new();
+    let [first, second] = surveyed(&bench);
+    let run = bench.path().join("logs").join(&first);
+    let compare = |file: &str| bench.tankops(&["compare-surveys", &first, &second, "-o", file]);
+    fs::remove_file(run.join("report.json")).unwrap();
+    let refused = compare("open.html");
+    assert!(
+        refused.code == Some(2) && refused.err.contains(&format!("`tankops recover {first} --by NAME`")),
+        "{refused:?}"
+    );
+    assert!(!bench.path().join("open.html").exists());
+    let text = crate::bench::journal_text(&run);
+    let end = text[..text.len() / 2].rfind('\n').unwrap() + 1;
+    crate::bench::change_journal(&run, &text[..end]);
+    let closed = bench.tankops(&["recover", &first, "--by", "L. Kern"]);
+    assert_eq!(closed.code, Some(0), "{closed:?}");
+    let compared = compare("cut.html");
+    assert!(
+        compared.code == Some(0) && compared.err.contains("it was cut off, and later closed by L. Kern"),
+        "{compared:?}"
+    );
+    let page = fs::read_to_string(bench.path().join("cut.html")).unwrap();
+    assert!(page.contains("The first survey is not whole: it was cut off, and later closed by L. Kern"));
+}

@@ -53,10 +53,14 @@ pub struct Inspection {
     pub sound_speed: Option<String>,
     /// A statement that nothing was indicated, or a reference to the report of the indications.
     pub indications: Option<String>,
+    /// The reason why that statement is true beside the indications that the readings show.
+    pub indications_explained: Option<String>,
+    /// The reason why the report is issued with losses that can go through the floor.
+    pub through_accepted: Option<String>,
     /// The person who reviewed alarms, holds and faults.
     pub events_reviewed_by: Option<String>,
-    /// Day of the inspection, as `2026-11-24`, for located readings: the names of their runs contain only the time at
-    /// which the readings were located.
+    /// Day of the inspection, as `2026-11-24`. Located readings need it: the names of their runs contain only the time at
+    /// which the readings were located. For missions, the default is the day of the run.
     pub inspected_on: Option<String>,
     /// The reason why no coverage is stated, for readings that do not show when the tool was on.
     pub coverage_waiver: Option<String>,
@@ -107,6 +111,8 @@ impl Inspection {
             station_check: later.station_check.or(self.station_check),
             sound_speed: later.sound_speed.or(self.sound_speed),
             indications: later.indications.or(self.indications),
+            indications_explained: later.indications_explained.or(self.indications_explained),
+            through_accepted: later.through_accepted.or(self.through_accepted),
             events_reviewed_by: later.events_reviewed_by.or(self.events_reviewed_by),
             inspected_on: later.inspected_on.or(self.inspected_on),
             coverage_waiver: later.coverage_waiver.or(self.coverage_waiver),

@@ -13,7 +13,7 @@ use flight::{
 use recording::READINGS_FILE;
 use report::{
     document::{Surveyed, TWO_SURVEYS_SUFFIXES, TwoSurveys, two_surveys_html, two_surveys_tables},
-    print::say_line,
+    print::{say_line, warn_line},
 };
 use runs::Past;
 use std::{
@@ -43,6 +43,14 @@ pub(crate) fn compare(args: &CompareSurveysArgs) -> anyhow::Result<ExitCode> {
     let past = review::read_all(&runs, &args.logs.folder())?;
     let [first, second] = &past[..] else { return Err(bad_input("give two runs")) };
     refuse_doubts([first, second])?;
+    for past in [first, second] {
+        if let Some(why) = past.run.cut_off() {
+            warn_line(&format!(
+                "note: run {}: {why}; only floor that both surveys tested is compared",
+                past.run.name
+            ));
+        }
+    }
     let surveyed = [
         Surveyed { past: &first.run, inspection: inspection(first, args.inspection_first.as_deref())? },
         Surveyed { past: &second.run, inspection: inspection(second, args.inspection_second.as_deref())? },
@@ -70,8 +78,19 @@ pub(crate) fn compare(args: &CompareSurveysArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(COMPLETE))
 }
 
-/// Refuses runs with files that were changed: a comparison would state losses that nobody measured.
+/// Refuses runs that were not closed, and runs with files that were changed: a comparison would lack losses that were
+/// measured, or state losses that were not.
 fn refuse_doubts(past: [&Past; 2]) -> anyhow::Result<()> {
+    let open = past.into_iter().map(|past| &past.run).find(|run| {
+        run.files.are_as_reported.is_none() && run.files.recovered.is_none() && run.files.doubts.is_empty()
+    });
+    if let Some(run) = open {
+        return Err(bad_input(format!(
+            "not compared: the report.json of run {name} is missing or states no digests, so readings could be missing \
+             without a trace; `tankops recover {name} --by NAME` closes the run and names what is missing",
+            name = run.name
+        )));
+    }
     let doubts = past.into_iter().flat_map(|past| {
         past.run.files.doubts.iter().map(move |doubt| format!("run {}: {doubt}", past.run.name))
     });

@@ -3,7 +3,7 @@
 use crate::{cli::ExportArgs, output::check_free};
 use ::locate::MeasuredWriter;
 use anyhow::Context;
-use flight::failure::{COMPLETE, bad_input};
+use flight::failure::{COMPLETE, bad_input, not_written};
 use recording::{RecordingError, Ticks, events_sha256, journal_of};
 use report::print::say_line;
 use runs::{find, journal_doubt};
@@ -84,8 +84,7 @@ fn ranges(folder: &Path, csv: &Path) -> anyhow::Result<()> {
         return Err(bad_input(format!("{}: {why}", folder.display())));
     }
     let stations = opened.world.stations;
-    let refused =
-        |error: &std::io::Error| bad_input(format!("cannot write the readings: {error}: {}", csv.display()));
+    let refused = |error: &std::io::Error| not_written("the readings", error, csv);
     let file = BufWriter::new(File::create_new(csv).map_err(|error| refused(&error))?);
     let mut writer = MeasuredWriter::new(file, &stations).map_err(|error| refused(&error))?;
     review::readings(folder, |t_s, readings, truth| writer.write(t_s, readings, truth))?;

@@ -5,7 +5,7 @@ mod words;
 use crate::{
     cli::{FindArg, LocateArgs},
     input,
-    output::check_free,
+    output::{check_free, fill_file},
 };
 use ::locate::{Doubts, Fixes, Pulsed, Refused, Survey, Tally, Task};
 use account::{Expect, PlannerCalls};
@@ -23,7 +23,7 @@ use serde::Serialize;
 use std::{
     collections::BTreeMap,
     fs::File,
-    io::{self, BufWriter},
+    io::BufWriter,
     path::{Path, PathBuf},
     process::ExitCode,
 };
@@ -156,7 +156,10 @@ pub(crate) fn locate(args: &LocateArgs) -> anyhow::Result<ExitCode> {
         [&args.readings, &args.scenario].into_iter().chain(&args.tool_on).map(PathBuf::as_path).collect();
     args.output.as_ref().map_or(Ok(()), |file| check_free(file, Some(args.force), &inputs))?;
     let survey = task.survey()?;
-    let (tally, doubts, kept) = located(args, &task, &survey)?;
+    let (tally, doubts, kept) = match &args.output {
+        Some(file) => fill_file("the fixes", file, |out| located(args, &task, &survey, Some(out)))?,
+        None => located(args, &task, &survey, None)?,
+    };
     if args.json {
         say_json("the results", &figures(args, &scenario, &survey, (&tally, &doubts)))?;
     } else {
@@ -171,9 +174,16 @@ pub(crate) fn locate(args: &LocateArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(exit_code(result, kept.as_ref())))
 }
 
-fn located(args: &LocateArgs, task: &Task, survey: &Survey) -> anyhow::Result<(Tally, Doubts, Option<Kept>)> {
+/// Locates the robot, and writes the fixes to a file if one is wanted.
+fn located(
+    args: &LocateArgs,
+    task: &Task,
+    survey: &Survey,
+    out: Option<&mut File>,
+) -> anyhow::Result<(Tally, Doubts, Option<Kept>)> {
     let scenario = task.scenario;
-    let mut table = args.output.as_deref().map(|file| table(file, scenario)).transpose()?;
+    let begin = |out| Fixes::new(BufWriter::new(out), &scenario.sim.world.stations);
+    let mut table = out.map(begin).transpose()?;
     let mut log = if args.no_record {
         None
     } else {
@@ -189,23 +199,12 @@ fn located(args: &LocateArgs, task: &Task, survey: &Survey) -> anyhow::Result<(T
             refused = Some(error);
         }
     })?;
-    if let (Some(table), Some(file)) = (table, &args.output) {
-        let finished = refused.map_or_else(|| table.finish(), Err);
-        finished.map_err(|error| not_written(file, &error))?;
+    if let Some(table) = table {
+        refused.map_or_else(|| table.finish(), Err)?;
     }
     let calls = PlannerCalls { plan: 0, step: 0, p50_us: None, p99_us: None, faults: 0 };
     let kept = log.and_then(|log| log.close(CLOSE_TIMEOUT, calls, None, &Expect::default()).kept);
     Ok((tally, doubts, kept))
-}
-
-fn table(file: &Path, scenario: &Scenario) -> anyhow::Result<Fixes<BufWriter<File>>> {
-    let made =
-        File::create(file).and_then(|out| Fixes::new(BufWriter::new(out), &scenario.sim.world.stations));
-    made.map_err(|error| not_written(file, &error))
-}
-
-fn not_written(file: &Path, error: &io::Error) -> anyhow::Error {
-    bad_input(format!("cannot write the fixes: {error}: {}", file.display()))
 }
 
 fn figures<'a>(

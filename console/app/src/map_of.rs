@@ -6,7 +6,7 @@ use crate::{
 };
 use campaign::shell;
 use flight::{
-    failure::{COMPLETE, bad_input},
+    failure::{COMPLETE, bad_input, not_written},
     planners::{self, COVERAGE_PLANNER},
 };
 use planner_host::PluginDirs;
@@ -43,9 +43,7 @@ fn ros_map(args: &MapOfArgs, survey: &PastSurvey) -> anyhow::Result<()> {
     let Some(map) = survey.map.ros(&name) else {
         return Err(bad_input("the map in the journal is damaged; run the survey again"));
     };
-    write_whole(&image, &map.pgm).map_err(|error| {
-        bad_input(format!("cannot write the image of the map: {error}: {}", image.display()))
-    })?;
+    write_whole(&image, &map.pgm).map_err(|error| not_written("the image of the map", &error, &image))?;
     write_file("the map", &args.output, &map.yaml)?;
     say(&format!("{} and {}: {}\n", args.output.display(), image.display(), human(survey)))?;
     Ok(())

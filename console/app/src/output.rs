@@ -1,11 +1,18 @@
 //! Writes results to files.
 
-use flight::failure::bad_input;
+use anyhow::Context;
+use flight::failure::{bad_input, not_written};
 use foreign::{plain_json, plain_lines};
 use report::document::Revision;
 use review::register;
 use runs::is_run;
-use std::{borrow::Cow, fs, io, os::unix::fs::MetadataExt, path::Path};
+use std::{
+    borrow::Cow,
+    fs::{self, File, OpenOptions},
+    io,
+    os::unix::fs::MetadataExt,
+    path::Path,
+};
 
 /// Checks that an output file named by the user may be written. An existing file, or the target of a link, is
 /// overwritten only if `force` is `Some(true)`; `force` is `None` for a command without `--force`. The command's own
@@ -50,10 +57,35 @@ fn is_same(one: &Path, other: &Path) -> bool {
 /// Writes an output file named by the user (see [`check_free`]), completely or not at all; error messages call it
 /// `name`.
 pub(crate) fn write_file(name: &str, file: &Path, text: &str) -> anyhow::Result<()> {
-    runs::write_whole(file, in_plain(file, text).as_bytes()).map_err(|error| {
-        let why = format!("cannot write {name}: {error}: {}", file.display());
-        if is_of_machine(&error) { anyhow::anyhow!(why) } else { bad_input(why) }
-    })
+    runs::write_whole(file, in_plain(file, text).as_bytes()).map_err(|error| not_written(name, &error, file))
+}
+
+/// Like [`write_file`], for a file that is too long for the memory: `write` fills it. Returns what `write` returns.
+pub(crate) fn fill_file<T>(
+    name: &str,
+    file: &Path,
+    write: impl FnOnce(&mut File) -> anyhow::Result<T>,
+) -> anyhow::Result<T> {
+    let mut made = None;
+    let fill = |out: &mut File| -> anyhow::Result<()> {
+        made = Some(write(out)?);
+        Ok(())
+    };
+    let is_pipe_or_device = fs::metadata(file).is_ok_and(|there| !there.is_file() && !there.is_dir());
+    let filled = if is_pipe_or_device {
+        OpenOptions::new()
+            .write(true)
+            .open(file)
+            .map_err(anyhow::Error::from)
+            .and_then(|mut out| fill(&mut out))
+    } else {
+        runs::write_whole_with(file, fill)
+    };
+    filled.map_err(|error| match error.downcast::<io::Error>() {
+        Ok(error) => not_written(name, &error, file),
+        Err(other) => other,
+    })?;
+    made.with_context(|| format!("{} was not written", file.display()))
 }
 
 /// The text with unsafe characters replaced. An HTML page is left as it is: its characters were replaced when the page
@@ -66,18 +98,12 @@ fn in_plain<'a>(file: &Path, text: &'a str) -> Cow<'a, str> {
     }
 }
 
-/// Whether the error comes from the machine, so that a different file name would not help.
-fn is_of_machine(error: &io::Error) -> bool {
-    use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
-    // EIO has no `ErrorKind`.
-    matches!(error.kind(), StorageFull | QuotaExceeded | FileTooLarge) || error.raw_os_error() == Some(5)
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
 
     use super::*;
+    use flight::failure::is_input;
     use std::os::unix::fs::symlink;
 
     #[test]
@@ -116,6 +142,26 @@ mod tests {
         // The page is neither an input nor part of a run.
         fs::write(&page, "").unwrap();
         assert!(check_free(&page, Some(true), &[]).is_ok());
+    }
+
+    #[test]
+    fn a_file_that_a_full_disk_cuts_off_is_not_left_behind() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("fixes.csv");
+        let fill = |kind: io::ErrorKind| {
+            fill_file("the fixes", &file, |out| {
+                io::Write::write_all(out, b"t_s\n")?;
+                Err::<(), _>(io::Error::from(kind).into())
+            })
+        };
+        let full = fill(io::ErrorKind::StorageFull).unwrap_err();
+        assert!(!is_input(&full) && full.to_string().starts_with("cannot write the fixes: "), "{full}");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        fs::write(&file, "kept").unwrap();
+        assert!(is_input(&fill(io::ErrorKind::PermissionDenied).unwrap_err()));
+        assert_eq!(fs::read_to_string(&file).unwrap(), "kept");
+        assert_eq!(fill_file("the fixes", &file, |_| Ok(7)).unwrap(), 7);
+        assert_eq!(fs::read_to_string(&file).unwrap(), "");
     }
 
     #[test]

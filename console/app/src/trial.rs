@@ -4,14 +4,14 @@ use crate::output::write_file;
 use command::json::pretty_json;
 use conformance::{Lost, Others, Trial};
 use flight::{
-    failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
+    failure::{COMPLETE, ENDED_OTHERWISE, bad_input, not_written},
     planners,
 };
 use mission::PlannerInfo;
 use planner_host::{PluginDirs, SurveyedPlugin, WorkerCommand, check_plugin};
 use report::print::{say, warn_line};
 use std::{
-    fs, io,
+    fs,
     path::{Path, PathBuf},
     process::ExitCode,
 };
@@ -54,8 +54,7 @@ pub(crate) fn fly(
 
 /// Writes the failed tanks as scenarios, and lists these files.
 fn keep_lost(folder: &Path, lost: &[Lost]) -> anyhow::Result<()> {
-    let failed = |error: io::Error| bad_input(format!("--keep {}: {error}", folder.display()));
-    fs::create_dir_all(folder).map_err(failed)?;
+    fs::create_dir_all(folder).map_err(|error| not_written("--keep", &error, folder))?;
     for Lost { name, scenario } in lost {
         let file = folder.join(format!("{name}.toml"));
         // The same tank always has the same text, so a different text has been edited by a person.

@@ -1,13 +1,17 @@
 //! The difference between a map and a drawing.
 
 use crate::{bodies::Column, cells::CellState, map::SurveyMap};
-use geometry::{Shape, Vector};
+use geometry::{Point, Shape, Vector};
 
 /// Maximum distance between the centres of a drawn column and of the column on the map that is the same, metres. Columns
 /// of a tank are farther apart.
 const SAME_M: f64 = 0.5;
 /// Share of the seen cells inside a drawn object from which it is there.
 const SOLID: f64 = 0.2;
+
+/// Distance from a drawn object within which a cell of the map belongs to it, and distance between two outlines of one
+/// object, metres.
+const NEAR_M: f64 = 0.15;
 
 /// What a map shows of a drawn object.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,15 +65,43 @@ impl SurveyMap {
         Some(drawn.iter().enumerate().map(fate).collect())
     }
 
-    /// What the cells show at the place of an object.
-    fn shown_at(&self, states: &[CellState], shape: &Shape) -> Fate {
+    /// The objects on the map that are neither columns nor drawn: the south-west and the north-east corner of each. The
+    /// outlines of one long object are one.
+    pub fn not_drawn(&self, drawn: &[Shape]) -> Vec<[Point; 2]> {
+        let is_near = |at: Point, shapes: &[Shape]| shapes.iter().any(|shape| shape.distance_m(at) <= NEAR_M);
+        let mut objects: Vec<Vec<Shape>> = Vec::new();
+        for outline in &self.others {
+            let cells: Vec<Point> = self.cells_of(outline).map(|cell| self.grid.center(cell)).collect();
+            let off = cells.iter().filter(|at| !is_near(**at, drawn)).count();
+            if 2 * off <= cells.len() {
+                continue;
+            }
+            let (touching, apart): (Vec<_>, Vec<_>) =
+                objects.into_iter().partition(|object| cells.iter().any(|at| is_near(*at, object)));
+            objects = apart;
+            objects.push(touching.into_iter().flatten().chain([outline.clone()]).collect());
+        }
+        let bounds = |object: &Vec<Shape>| {
+            let corners = object.iter().map(Shape::bounds).map(|(low, high)| [low, high]);
+            corners.reduce(|[low, high], [l, h]| [low.inf(&l), high.sup(&h)])
+        };
+        objects.iter().filter_map(bounds).collect()
+    }
+
+    /// The cells that a shape covers.
+    fn cells_of(&self, shape: &Shape) -> impl Iterator<Item = usize> {
         let (low, high) = shape.bounds();
         // A thin object may have no centre of a cell inside it.
         let reach_m = 0.5 * self.grid.cell_m;
         let reach = Vector::repeat(reach_m);
         let cells = self.grid.within(low - reach, high + reach);
+        cells.filter(move |cell| shape.distance_m(self.grid.center(*cell)) <= reach_m)
+    }
+
+    /// What the cells show at the place of an object.
+    fn shown_at(&self, states: &[CellState], shape: &Shape) -> Fate {
         let (mut seen, mut solid) = (0.0, 0.0);
-        for cell in cells.filter(|cell| shape.distance_m(self.grid.center(*cell)) <= reach_m) {
+        for cell in self.cells_of(shape) {
             seen += f64::from(u8::from(states[cell] != CellState::Unseen));
             solid += f64::from(u8::from(states[cell] == CellState::Solid));
         }
@@ -131,5 +163,24 @@ mod tests {
         assert_eq!(rest, [Fate::NotThere, Fate::NotThere, Fate::NotSeen, Fate::There]);
         let damaged = SurveyMap { cells: "1x".into(), ..map() };
         assert_eq!(damaged.fates(&drawn), None);
+    }
+
+    #[test]
+    fn an_object_that_is_not_drawn_is_one_object_and_a_drawn_one_is_none() {
+        let piece = |x: f64, to_x: f64| Shape::Polygon {
+            vertices: shape::rectangle(Point::new(x, -1.0), Point::new(to_x, -0.8)),
+        };
+        let map = map();
+        let wall = map.others[0].clone();
+        let map = SurveyMap {
+            others: vec![piece(0.5, 1.5), wall.clone(), piece(2.5, 3.5), piece(1.5, 2.5)],
+            ..map
+        };
+        let [[low, high]] = &map.not_drawn(std::slice::from_ref(&wall))[..] else { panic!("one object") };
+        assert_eq!((*low, *high), (Point::new(0.5, -1.0), Point::new(3.5, -0.8)));
+        assert_eq!(map.not_drawn(&[]).len(), 2);
+        let pipe =
+            Shape::Polyline { points: vec![Point::new(0.5, -0.9), Point::new(3.5, -0.9)], half_width_m: 0.1 };
+        assert!(map.not_drawn(&[wall, pipe]).is_empty());
     }
 }

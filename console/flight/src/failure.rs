@@ -3,8 +3,8 @@
 use account::Summary;
 use mission::Outcome;
 use recording::JournalError;
-use runs::{Kept, RunError};
-use std::fmt;
+use runs::{Kept, RunError, is_of_machine};
+use std::{fmt, io, path::Path};
 
 /// The mission ran, is complete, and met all bounds of its scenario (`[expect]`).
 pub const COMPLETE: u8 = 0;
@@ -30,6 +30,13 @@ impl std::error::Error for BadInput {}
 /// Creates an input error.
 pub fn bad_input(text: impl Into<String>) -> anyhow::Error {
     BadInput(text.into()).into()
+}
+
+/// The error about a file named by the user that the system refused to write; messages call it `what`. A full or faulty
+/// disk is not an input error.
+pub fn not_written(what: &str, error: &io::Error, file: &Path) -> anyhow::Error {
+    let why = format!("cannot write {what}: {error}: {}", file.display());
+    if is_of_machine(error) { anyhow::anyhow!(why) } else { bad_input(why) }
 }
 
 /// Whether a failure is an input error; this includes journals that cannot be read, and folders in which runs cannot be

@@ -43,6 +43,14 @@ pub enum RecordingError {
         /// The error of the system.
         why: String,
     },
+    /// A file that a journal gives could not be written.
+    #[error("cannot write the file ({why}): {}", path.display())]
+    File {
+        /// The error of the system or the format.
+        why: String,
+        /// The file.
+        path: PathBuf,
+    },
     /// The chunks of a recording cannot be merged; the recording is complete even so.
     #[error("the chunks of the recording cannot be merged ({why}): {}", path.display())]
     Merge {

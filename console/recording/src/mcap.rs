@@ -15,6 +15,7 @@
 //! All messages use the frame `tank`; time is mission time.
 
 mod cdr;
+mod out;
 mod ros;
 mod summary;
 
@@ -24,11 +25,12 @@ use account::{Fold, Reading};
 use cdr::Cdr;
 use mission::{Event, EventKind, Severity, event::RunOpened};
 use nalgebra::{Matrix2, Matrix3};
+use out::Out;
 use ros::{Pose3, Stamp};
 use std::{
     collections::{BTreeMap, btree_map::Entry},
     fs::File,
-    io::BufWriter,
+    io::{BufWriter, Write},
     path::Path,
 };
 use world::{Cell, CoverageGrid, Floor, FloorClass, Point, Pose, Station};
@@ -45,30 +47,29 @@ const TRACK_M: f64 = 0.01;
 /// The journal is missing or damaged, or the file cannot be written; an existing file is never overwritten.
 pub fn export_mcap(journal: &Path, file: &Path) -> Result<Option<String>, RecordingError> {
     let mut reader = JournalReader::open(journal)?;
-    let create =
-        |why: &dyn std::fmt::Display| RecordingError::Create { why: why.to_string(), path: file.into() };
-    let out = File::create_new(file).map_err(|error| create(&error))?;
+    let out = File::create_new(file)
+        .map_err(|error| RecordingError::Create { why: error.to_string(), path: file.into() })?;
+    let not_written = |why: String| RecordingError::File { why, path: file.into() };
+    let (out, failure) = Out::new(BufWriter::new(out));
     let options = WriteOptions::new().profile("ros2").library("tankops");
-    let out = options.create(BufWriter::new(out)).map_err(|error| create(&error))?;
+    let out = options.create(out).map_err(|error| not_written(error.to_string()))?;
     let mut export = Export { out, channels: BTreeMap::new(), run: None, account: None };
     for event in reader.by_ref() {
-        export.take(&event?).map_err(|error| write(&error))?;
+        export.take(&event?).map_err(|error| not_written(error.to_string()))?;
+        if failure.error().is_some() {
+            break;
+        }
     }
-    export.finish().map_err(|error| write(&error))?;
-    summary::sort(file).map_err(|error| RecordingError::Write { why: error.to_string() })?;
+    export.finish().map_err(|error| not_written(error.to_string()))?;
+    failure.error().map_or(Ok(()), |error| Err(not_written(error.to_string())))?;
+    summary::sort(file).map_err(|error| not_written(error.to_string()))?;
     Ok(reader.truncated().map(str::to_owned))
-}
-
-fn write(error: &::mcap::McapError) -> RecordingError {
-    // The text of the error does not contain the reason of the system.
-    let reason = std::error::Error::source(error).map(|reason| format!(": {reason}")).unwrap_or_default();
-    RecordingError::Write { why: format!("{error}{reason}") }
 }
 
 type Done = Result<(), ::mcap::McapError>;
 
 struct Export {
-    out: Writer<BufWriter<File>>,
+    out: Writer<Out<BufWriter<File>>>,
     /// Channel and next sequence number of each topic.
     channels: BTreeMap<&'static str, (u16, u32)>,
     run: Option<Run>,
@@ -270,6 +271,8 @@ impl Export {
             self.path("/track", run.now_s, &run.track)?;
         }
         self.out.finish()?;
+        // An error of the last data is kept with the others.
+        self.out.into_inner().flush()?;
         Ok(())
     }
 }

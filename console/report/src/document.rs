@@ -8,6 +8,7 @@ mod decision;
 mod decisions;
 pub mod dxf;
 mod follow_up;
+mod found;
 mod gate;
 pub mod geojson;
 pub mod grid;
@@ -41,7 +42,7 @@ pub use packed::stated_files;
 pub use readings::{Located, Readings};
 pub use run_part::{Driver, Files, PulseRecord, Recovered, RunPart, TetherPart};
 pub use signed::{Revision, Signature, SignedRun};
-pub use survey::{ColumnPart, DrawnAs, Instead, MapPart, NotFound};
+pub use survey::{ColumnPart, DrawnAs, Instead, MapPart, NotDrawn, NotFound};
 pub use task::TaskPart;
 pub use two_surveys::{
     Due, Grown, Single, SurveyPart, Surveyed, TWO_SURVEYS_SUFFIXES, TwoSurveys, two_surveys_html,

@@ -82,8 +82,25 @@ impl FloorFacts {
 }
 
 /// Compares an inspector's facts with the scenario of the run; returns a sentence for the first contradiction about
-/// the floor. A fact that is missing on one side is not a contradiction.
-pub(crate) fn contradiction(facts: &Inspection, flown: &Inspection) -> Option<String> {
+/// the floor. A fact that is missing on one side is not a contradiction. `sampled_mm` is the thickness of the plates that
+/// the instrument of the run was set to, millimetres.
+pub(crate) fn contradiction(
+    facts: &Inspection,
+    flown: &Inspection,
+    sampled_mm: Option<f64>,
+) -> Option<String> {
+    of_floor(facts, flown).or_else(|| {
+        let (stated_mm, sampled_mm) = (facts.nominal_thickness_mm?, sampled_mm?);
+        ((stated_mm - sampled_mm).abs() > 1e-9).then(|| {
+            format!(
+                "nominal_thickness_mm is {stated_mm}, but instrument.thickness_mm, from which every loss was computed, \
+                 is {sampled_mm} in the scenario of the run"
+            )
+        })
+    })
+}
+
+fn of_floor(facts: &Inspection, flown: &Inspection) -> Option<String> {
     let (facts, flown) = (FloorFacts::of(facts), FloorFacts::of(flown));
     let flown = flown.or(&facts);
     let [facts, flown] = [facts.or(&flown), flown].map(|side| serde_json::to_value(side).ok());

@@ -45,6 +45,12 @@ pub struct ImportedReadings {
 }
 
 impl PastRun {
+    /// That the run was cut off, and who closed it; `None` if it reached its end or was not closed.
+    pub fn cut_off(&self) -> Option<String> {
+        let recovered = self.files.recovered.as_ref().filter(|_| self.summary.outcome.is_none())?;
+        Some(format!("it was cut off, and later closed {recovered}"))
+    }
+
     /// Whether the run consists of located readings and is not a mission.
     pub(crate) fn is_located(&self) -> bool {
         self.fold.run().is_some_and(|run| run.measured.is_some())

@@ -3,6 +3,13 @@
 use recording::{JOURNAL_FILE, JournalError, RecordingError};
 use std::{io, path::PathBuf};
 
+/// Whether an error of the system comes from the machine (a full or faulty disk), so that a different name would not help.
+pub fn is_of_machine(error: &io::Error) -> bool {
+    use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+    // EIO has no `ErrorKind`.
+    matches!(error.kind(), StorageFull | QuotaExceeded | FileTooLarge) || error.raw_os_error() == Some(5)
+}
+
 /// The reason why a run cannot be kept, found or read.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {

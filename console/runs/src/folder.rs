@@ -100,7 +100,7 @@ impl RunFolder {
 }
 
 fn not_writable(logs: &Path, error: &io::Error) -> RunError {
-    LogsError::NotWritable { logs: logs.to_owned(), why: error.to_string() }.into()
+    LogsError::writing(logs, error).into()
 }
 
 fn fresh_folder(logs: &Path, name: &str) -> Result<PathBuf, RunError> {

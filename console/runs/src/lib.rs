@@ -28,7 +28,7 @@ mod verified;
 mod whole;
 
 pub use by_journal::by_journal;
-pub use error::RunError;
+pub use error::{RunError, is_of_machine};
 pub use files::{began, utc, utc_day_minute, utc_minute};
 pub use folder::{RunFolder, find, is_run};
 pub use imported::{IMPORT_FILE, write_import};

@@ -1,7 +1,10 @@
 //! Checks whether runs can be kept in the folder for runs, before the console takes over the terminal and before anything
 //! moves.
 
-use crate::{error::RunError, log::CLOSE_TIMEOUT};
+use crate::{
+    error::{RunError, is_of_machine},
+    log::CLOSE_TIMEOUT,
+};
 use recording::{JOURNAL_FILE, Options, RECORDING_FILE, RunRecorder, events_sha256};
 use rustix::process::{Resource, getrlimit};
 use std::{
@@ -28,6 +31,9 @@ pub(crate) enum LogsError {
     /// The system refuses to create, write or remove a file in the folder.
     #[error("cannot keep runs in {}: the folder is not writable ({why}); choose another one with --logs", logs.display())]
     NotWritable { logs: PathBuf, why: String },
+    /// The disk is full or faulty.
+    #[error("cannot keep runs in {}: {why}; free some space or choose another folder with --logs", logs.display())]
+    Disk { logs: PathBuf, why: String },
     /// There is not enough free space.
     #[error(
         "cannot keep runs in {}: {} MB are free, but at least {} MB are needed; free some space or choose another folder with \
@@ -99,10 +105,20 @@ fn record_and_read(folder: &Path) -> Result<u64, RunError> {
     Ok(bytes(&journal)? + bytes(&recording)?)
 }
 
+impl LogsError {
+    /// The system refused to create, write or remove a file in the folder.
+    pub(crate) fn writing(logs: &Path, error: &io::Error) -> Self {
+        let (logs, why) = (logs.to_owned(), error.to_string());
+        if is_of_machine(error) { Self::Disk { logs, why } } else { Self::NotWritable { logs, why } }
+    }
+}
+
 impl From<LogsError> for RunError {
     fn from(error: LogsError) -> Self {
         match error {
-            LogsError::FilesTooSmall { .. } => Self::Machine(error.to_string()),
+            LogsError::FilesTooSmall { .. } | LogsError::NoSpace { .. } | LogsError::Disk { .. } => {
+                Self::Machine(error.to_string())
+            }
             _ => Self::Logs(error.to_string()),
         }
     }
@@ -117,8 +133,14 @@ pub(crate) fn make_logs(logs: &Path) -> Result<(), LogsError> {
     if let Some(file) = file_on_the_way(logs) {
         return Err(LogsError::NotAFolder { logs: logs.to_owned(), file });
     }
-    fs::create_dir_all(logs)
-        .map_err(|error| LogsError::CannotCreate { logs: logs.to_owned(), why: error.to_string() })?;
+    fs::create_dir_all(logs).map_err(|error| {
+        let (logs, why) = (logs.to_owned(), error.to_string());
+        if is_of_machine(&error) {
+            LogsError::Disk { logs, why }
+        } else {
+            LogsError::CannotCreate { logs, why }
+        }
+    })?;
     check_folder(logs)
 }
 
@@ -130,7 +152,7 @@ fn check_folder(logs: &Path) -> Result<(), LogsError> {
     if let Some(limit) = getrlimit(Resource::Fsize).current.filter(|limit| *limit < MIN_FREE_BYTES) {
         return Err(LogsError::FilesTooSmall { logs: logs.to_owned(), limit_bytes: limit });
     }
-    probe(logs).map_err(|error| LogsError::NotWritable { logs: logs.to_owned(), why: error.to_string() })
+    probe(logs).map_err(|error| LogsError::writing(logs, &error))
 }
 
 /// The first part of a path that is a file; `None` if there is none.
@@ -219,5 +241,17 @@ mod tests {
         let (logs, free_bytes) = (PathBuf::from("logs"), 943_718);
         let error = LogsError::NoSpace { logs, free_bytes, needed_bytes: MIN_FREE_BYTES };
         assert!(error.to_string().contains("0.9 MB are free, but at least 16.0 MB are needed"), "{error}");
+    }
+
+    #[test]
+    fn a_full_disk_is_a_fault_of_the_machine_and_a_wrong_folder_is_one_of_the_input() {
+        let logs = || PathBuf::from("logs");
+        let full = LogsError::NoSpace { logs: logs(), free_bytes: 0, needed_bytes: MIN_FREE_BYTES };
+        let faulty = LogsError::writing(&logs(), &io::ErrorKind::QuotaExceeded.into());
+        for error in [full, faulty] {
+            assert!(!RunError::from(error).is_input());
+        }
+        let wrong = LogsError::CannotCreate { logs: logs(), why: "permission denied".into() };
+        assert!(RunError::from(wrong).is_input());
     }
 }

@@ -1,10 +1,17 @@
 //! Closes a run whose writer did not close it: the writer was killed, or could not finish in time. The report records the
 //! digests of the files, who closed the run and when, and the missing parts. A journal is never changed. If the journal
 //! contains the end of the mission, the recording and the readings are made again from it; otherwise they stay as they are.
+//! A report whose figures go beyond the journal is kept as a copy.
 
 use crate::{
-    error::RunError, files::REPORT_FILE, folder::RunFolder, past::Past, report_file::Reported,
-    standing::held, utc_minute, whole::draft_of,
+    error::RunError,
+    files::REPORT_FILE,
+    folder::RunFolder,
+    past::Past,
+    report_file::Reported,
+    standing::held,
+    utc_minute,
+    whole::{draft_of, write_whole},
 };
 use account::{Expect, Logs, Summary};
 use mission::RunOpened;
@@ -15,6 +22,8 @@ use recording::{
 use report::document::Recovered;
 use std::{fs, io, path::Path, time::SystemTime};
 
+/// The copy of the report that the run wrote at its end, if that report goes beyond the journal.
+const KEPT_REPORT_FILE: &str = "report-before-recovery.json";
 /// The figures that the writer would have added at the end.
 const BY_THE_CLOCK: &str = "wall-clock figures: computing time, planner calls, stops";
 /// The parts that are missing from a recording that was not closed.
@@ -48,6 +57,9 @@ pub fn recover(
     let expect = if is_whole { expect(&past.opened) } else { None };
     let missing = missing(folder, &past, (by_the_clock, expect.as_ref()));
     let recovered = Recovered { by: by.to_owned(), at: utc_minute(SystemTime::now()), missing };
+    if by_the_clock.is_some_and(|report| goes_beyond(report, &past.run.summary)) {
+        keep_report(folder)?;
+    }
     let made = if is_whole { Some(made_again(folder, &past)?) } else { None };
     let summary = closed(&past, made, by_the_clock);
     let summary = match expect {
@@ -85,6 +97,18 @@ fn closed(past: &Past, made: Option<[Option<String>; 2]>, by_the_clock: Option<&
         logs: Some(logs),
         ..past.run.summary.clone()
     }
+}
+
+/// Whether a report has figures of a part of the mission that is missing from the journal.
+fn goes_beyond(report: &Summary, journal: &Summary) -> bool {
+    report.ticks > journal.ticks || report.outcome.is_some() && journal.outcome.is_none()
+}
+
+/// Keeps the report of a run under another name.
+fn keep_report(folder: &Path) -> Result<(), RunError> {
+    let copy = folder.join(KEPT_REPORT_FILE);
+    let kept = fs::read(folder.join(REPORT_FILE)).and_then(|report| write_whole(&copy, &report));
+    kept.map_err(RunError::during(format!("writing {}", copy.display())))
 }
 
 /// The path of the recording, beside the journal.
@@ -186,6 +210,12 @@ fn missing(folder: &Path, past: &Past, known: (Option<&Summary>, Option<&Expect>
             .extend(recorded_failure(folder).map(|why| format!("the data that could not be written: {why}")));
     } else if expect.is_none() {
         missing.push(EXPECTATIONS.to_owned());
+    }
+    if by_the_clock.is_some_and(|report| goes_beyond(report, &run.summary)) {
+        missing.push(format!(
+            "the figures of the whole mission: they are only in the report that the run wrote at its end, which was \
+             kept as {KEPT_REPORT_FILE}"
+        ));
     }
     if by_the_clock.is_none() {
         missing.push(BY_THE_CLOCK.to_owned());

@@ -38,6 +38,8 @@ pub(crate) fn section(root: &Section<'_>) -> Option<Inspection> {
         station_check: text("station_check"),
         sound_speed: text("sound_speed"),
         indications: text("indications"),
+        indications_explained: text("indications_explained"),
+        through_accepted: text("through_accepted"),
         events_reviewed_by: text("events_reviewed_by"),
         inspected_on: day(&section, "inspected_on"),
         coverage_waiver: text("coverage_waiver"),

@@ -228,6 +228,8 @@ static INSPECTION: &[Key] = &[
     key("station_check", "", Kind::Text).or_none(MISSING),
     key("sound_speed", "", Kind::Text).or_none(MISSING),
     key("indications", "", Kind::Text).or_none(MISSING),
+    key("indications_explained", "", Kind::Text).or_none(MISSING),
+    key("through_accepted", "", Kind::Text).or_none(MISSING),
     key("events_reviewed_by", "", Kind::Text).or_none(MISSING),
     key("inspected_on", "", Kind::Text).or_none("the day of the run"),
     key("coverage_waiver", "", Kind::Text).or_none(MISSING),

@@ -296,6 +296,9 @@ impl Columns {
     }
 }
 
+/// Largest reading, as a multiple of the thickness of a plate: where plates overlap, two are under the tool.
+const MOST_PLATES: f64 = 2.5;
+
 /// Refuses what no instrument can read on a plate.
 fn possible(
     text: &str,
@@ -313,11 +316,13 @@ fn possible(
             format!("`{text}`: deeper than the plate is thick ({nominal_mm} mm, instrument.thickness_mm)");
         return Err(("depth above thickness", what));
     }
-    // Where plates overlap, two are under the tool.
-    if thickness_mm > 2.5 * nominal_mm {
+    let most_mm = MOST_PLATES * nominal_mm;
+    if thickness_mm > most_mm {
+        let is_long = thickness_mm >= 1e6;
+        let shown = if is_long { format!("{thickness_mm:.1e}") } else { format!("{thickness_mm:.1}") };
         let what = format!(
-            "`{text}`: {thickness_mm:.1} mm, more than two plates of {nominal_mm} mm (instrument.thickness_mm); is the \
-             unit right?"
+            "`{text}`: {shown} mm, more than {most_mm} mm ({MOST_PLATES} times instrument.thickness_mm, because plates \
+             overlap); is the unit right?"
         );
         return Err(("thickness above two plates", what));
     }

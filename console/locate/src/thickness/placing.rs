@@ -190,10 +190,12 @@ impl<'a> Placing<'a> {
         let (from_s, to_s) = self.run.track.span_s().unwrap_or_default();
         let (least, most) = self.beyond_s.unwrap_or((t_s, t_s));
         self.beyond_s = Some((least.min(t_s), most.max(t_s)));
+        // A time that is only just outside has no tenths.
+        let shown = |by_s: f64| if by_s < 0.1 { format!("{by_s:.4} s") } else { format!("{by_s:.1} s") };
         if t_s < from_s {
-            (BEFORE, format!("{:.1} s before the start of the run", from_s - t_s))
+            (BEFORE, format!("{} before the start of the run", shown(from_s - t_s)))
         } else {
-            (AFTER, format!("{:.1} s after the end of the run", t_s - to_s))
+            (AFTER, format!("{} after the end of the run", shown(t_s - to_s)))
         }
     }
 

@@ -97,7 +97,8 @@ impl Document {
             let first = indications.len() + 1;
             indications.extend(thickness::indications(read, past, &layers, first));
         }
-        let contradiction = contradiction(&context.inspection, &Stated::by(run)?.inspection);
+        let sampled_mm = run.mission.instrument.as_ref().and_then(|of| Some(of.sampling?.thickness_mm));
+        let contradiction = contradiction(&context.inspection, &Stated::by(run)?.inspection, sampled_mm);
         let runs: Vec<RunPart> = past.iter().filter_map(RunPart::of).collect();
         let shapes = Shapes::of(&layers, &floor.missed);
         let mut pictures = Pictures::draw(&layers, &floor, &indications, past);

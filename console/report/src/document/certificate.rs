@@ -54,10 +54,11 @@ pub(super) fn doubts(document: &Document) -> Vec<String> {
     doubts
 }
 
-/// The day of the inspection: the start date of the last run or, for readings, the stated day.
+/// The day of the inspection: the stated day or, for missions, the start date of the last run.
 fn inspected(document: &Document) -> Option<Date> {
-    if document.located.is_some() {
-        return Date::read(document.inspection.inspected_on.as_ref()?);
+    let stated = document.inspection.inspected_on.as_ref();
+    if document.located.is_some() || stated.is_some() {
+        return Date::read(stated?);
     }
     let began = document.runs.iter().filter_map(|run| run.began.as_deref());
     began.filter_map(|began| Date::read(began.get(..10)?)).max()

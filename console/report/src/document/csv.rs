@@ -1,9 +1,10 @@
 //! The report as tables for spreadsheets.
 
-use super::{model::Document, thickness::Thickness};
+use super::{model::Document, survey::on_map, thickness::Thickness};
 use crate::{geojson::rounded, past_run::PastRun};
 use account::{Shares, ZoneArc};
 use csv::Writer;
+use world::Shape;
 
 /// Suffixes of the file names: each table has the name of the first table with its own suffix.
 pub const SUFFIXES: [&str; 7] =
@@ -143,22 +144,35 @@ fn zone(document: &Document) -> String {
     table(&head, document.floor.critical_zone.arcs.iter().map(row))
 }
 
+/// The obstacles that were found; for a survey, those on its map, with the 95 % errors of the columns.
 fn obstacles(past: &[PastRun]) -> String {
-    let rows = past.iter().flat_map(|past| {
-        past.fold.found().map(|solid| {
-            let (low, high) = solid.shape.bounds();
-            let center = solid.shape.center();
-            let mut row = vec![past.name.clone(), solid.name.clone()];
-            let values = [center.x, center.y, high.x - low.x, high.y - low.y];
-            row.extend(values.map(|m| format!("{m:.3}")));
-            row
-        })
-    });
-    table(&["run", "name", "x_m", "y_m", "extent_x_m", "extent_y_m"], rows)
+    let run = past.last().map_or("", |past| past.name.as_str());
+    if let Some(objects) = on_map(past) {
+        let rows = objects.into_iter().map(|object| {
+            let errors =
+                object.errors_95_m.map(|errors| errors.map(|m| format!("{m:.3}"))).unwrap_or_default();
+            obstacle(run, &object.name, &object.shape).into_iter().chain(errors).collect()
+        });
+        let more = ["center_95_m", "radius_95_m"];
+        return table(&[&OBSTACLE[..], &more[..]].concat(), rows);
+    }
+    let rows = past
+        .iter()
+        .flat_map(|past| past.fold.found().map(|solid| obstacle(&past.name, &solid.name, &solid.shape)));
+    table(&OBSTACLE, rows)
+}
+
+/// The columns of the table of obstacles.
+const OBSTACLE: [&str; 6] = ["run", "name", "x_m", "y_m", "extent_x_m", "extent_y_m"];
+
+fn obstacle(run: &str, name: &str, shape: &Shape) -> Vec<String> {
+    let ((low, high), center) = (shape.bounds(), shape.center());
+    let values = [center.x, center.y, high.x - low.x, high.y - low.y].map(|m| format!("{m:.3}"));
+    [run.to_owned(), name.to_owned()].into_iter().chain(values).collect()
 }
 
 fn indications(document: &Document) -> String {
-    let optional = |value: Option<f64>| value.map(|value| value.to_string()).unwrap_or_default();
+    let optional = |value: Option<f64>| value.map(|value| rounded(value).to_string()).unwrap_or_default();
     let fixed = |value: Option<f64>, decimals: usize| {
         value.map(|value| format!("{value:.decimals$}")).unwrap_or_default()
     };

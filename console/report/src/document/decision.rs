@@ -6,6 +6,8 @@ pub(super) const TANK: usize = 1;
 pub(super) const SCOPE: usize = 2;
 /// The gate item about missed areas.
 pub(super) const MISSED: usize = 6;
+/// The gate item about indications.
+pub(super) const INDICATIONS: usize = 9;
 
 /// A decision that the inspector must make.
 pub(super) struct Decision {

@@ -3,7 +3,7 @@
 
 use super::{
     decision::{Decision, MISSED, SCOPE, TANK},
-    located,
+    found, located,
     model::Document,
 };
 use crate::human::text::counted;
@@ -28,6 +28,7 @@ pub(super) fn decisions(document: &Document) -> Vec<Decision> {
             answer: facts.identity_corrected.clone(),
         });
     }
+    decisions.extend(found::decisions(document));
     if let Some(located) = &document.located {
         decisions.extend(located::decisions(document, located));
         return decisions;

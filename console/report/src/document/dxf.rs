@@ -5,7 +5,7 @@
 //! `tankops import` can read the floor from this drawing: seams end at each other or at the shell, the name of each
 //! plate is on the layer of the seams, and pipes keep their width.
 
-use super::{model::Document, shapes::zones};
+use super::{model::Document, shapes::zones, survey::on_map};
 use crate::{
     drawing::{plates::PlateLines, polygons::Polygon, trace::thinned},
     dxf::Drawing,
@@ -38,15 +38,7 @@ pub fn dxf(document: &Document, past: &[PastRun]) -> String {
     if let Some(run) = past.last().and_then(|past| past.fold.run()) {
         drawing.boundary("SHELL", &run.world.boundary);
         plates(&mut drawing, run);
-        for obstacle in run.world.obstacles.iter().filter(|obstacle| obstacle.known) {
-            solid(&mut drawing, &obstacle.shape);
-        }
-        for (index, of_run) in past.iter().enumerate() {
-            for solid in of_run.fold.found() {
-                self::solid(&mut drawing, &solid.shape);
-                drawing.text("OBSTACLES", solid.shape.center(), &found_name(&solid.name, index, past.len()));
-            }
-        }
+        obstacles(&mut drawing, run, past);
     }
     if let Some(run) = past.last().and_then(|past| past.fold.run()) {
         zones_and_stations(&mut drawing, run, past);
@@ -78,6 +70,28 @@ pub fn dxf(document: &Document, past: &[PastRun]) -> String {
         drawing.text("FOLLOW_UP", place.at, &place.number.to_string());
     }
     drawing.finish()
+}
+
+/// Draws the obstacles: those on the map of a survey with the 95 % error of their centre, otherwise those on the drawing
+/// and those that were found. The map of a survey shows the drawn ones, too.
+fn obstacles(drawing: &mut Drawing, run: &RunOpened, past: &[PastRun]) {
+    if let Some(objects) = on_map(past) {
+        for object in objects {
+            solid(drawing, &object.shape);
+            let error = object.errors_95_m.map(|[m, _]| format!(" ±{m:.3} m")).unwrap_or_default();
+            drawing.text("OBSTACLES", object.shape.center(), &format!("{}{error}", object.name));
+        }
+        return;
+    }
+    for obstacle in run.world.obstacles.iter().filter(|obstacle| obstacle.known) {
+        solid(drawing, &obstacle.shape);
+    }
+    for (index, of_run) in past.iter().enumerate() {
+        for found in of_run.fold.found() {
+            solid(drawing, &found.shape);
+            drawing.text("OBSTACLES", found.shape.center(), &found_name(&found.name, index, past.len()));
+        }
+    }
 }
 
 /// Draws zones and stations.

@@ -2,7 +2,7 @@
 
 use super::{
     certificate,
-    decision::{MISSED, SCOPE, TANK},
+    decision::{INDICATIONS, MISSED, SCOPE, TANK},
     decisions::{decisions, is_complete},
     located,
     model::{Document, GateItem},
@@ -135,7 +135,9 @@ fn equipment(document: &Document) -> Answered {
     }
     let flown = |run: &RunPart| {
         let drivers: Vec<&str> = run.drivers.iter().map(|driver| driver.name.as_str()).collect();
-        format!("tankops {}, {}, seed {}", run.tankops_version, drivers.join(", "), run.seed)
+        // A survey has no planner.
+        let drivers = if drivers.is_empty() { "no planner".to_owned() } else { drivers.join(", ") };
+        format!("tankops {}, {drivers}, seed {}", run.tankops_version, run.seed)
     };
     (document.runs.iter().map(flown).collect::<Vec<_>>().join("; "), lacks)
 }
@@ -262,7 +264,7 @@ fn indications(document: &Document) -> Answered {
     }
     let lacks = given(&[("indications", &stated)]);
     let placed = (placed > 0).then(|| format!("{placed} placed on the map"));
-    (placed.into_iter().chain(stated).collect::<Vec<_>>().join("; "), lacks)
+    decided(document, INDICATIONS, (placed.into_iter().chain(stated).collect::<Vec<_>>().join("; "), lacks))
 }
 
 fn tether(document: &Document) -> Answered {

@@ -1,7 +1,9 @@
 //! The report as `GeoJSON`: track, missed areas, plates, obstacles, zones, stations, shell, indications,
 //! and places that need a test with another method.
 
-use super::{follow_up::FollowUp, indications::Indication, located, model::Document, shapes::zones};
+use super::{
+    follow_up::FollowUp, indications::Indication, located, model::Document, shapes::zones, survey::on_map,
+};
 use crate::{
     drawing::trace::thinned,
     geojson::{Datum, feature, outline, rounded},
@@ -83,7 +85,17 @@ fn tank(datum: &Datum<'_>, run: &RunOpened, past: &[PastRun]) -> Vec<Value> {
         let name = |solid: &Solid| found_name(&solid.name, index, past.len());
         run.fold.found().map(|solid| (name(solid), solid.shape.clone(), "found")).collect()
     };
-    let found = past.iter().enumerate().flat_map(of_run);
+    let map = on_map(past);
+    // The map of a survey replaces what the tracker found under way.
+    let found = past.iter().enumerate().filter(|_| map.is_none()).flat_map(of_run);
+    features.extend(map.iter().flatten().map(|object| {
+        let mut properties = json!({ "layer": "obstacles", "name": object.name, "source": "map" });
+        if let Some([center_m, radius_m]) = object.errors_95_m {
+            properties["center_95_m"] = json!(rounded(center_m));
+            properties["radius_95_m"] = json!(rounded(radius_m));
+        }
+        feature(datum.shape(&object.shape), properties)
+    }));
     features.extend(drawn.chain(found).map(|(name, shape, source)| {
         feature(datum.shape(&shape), json!({ "layer": "obstacles", "name": name, "source": source }))
     }));
@@ -127,7 +139,7 @@ fn indications(datum: &Datum<'_>, document: &Document) -> Vec<Value> {
     let indication = |found: &Indication| {
         let properties = json!({
             "layer": "indications", "number": found.number, "run": found.run, "t_s": found.t_s.map(rounded),
-            "error_95_m": found.error_m.map(rounded), "kind": found.kind, "size_mm": found.size_mm, "depth_mm": found.depth_mm,
+            "error_95_m": found.error_m.map(rounded), "kind": found.kind, "size_mm": found.size_mm.map(rounded), "depth_mm": found.depth_mm.map(rounded),
             "plate": found.plate, "note": found.note,
         });
         feature(datum.point(found.at), properties)

@@ -10,7 +10,7 @@ mod task;
 mod thickness;
 
 use super::{
-    located,
+    found, located,
     model::Document,
     page::{Page, Section, section},
 };
@@ -19,10 +19,11 @@ use super::{
 pub(super) fn sections(document: &Document) -> Page {
     if let Some(located) = &document.located {
         let page = front::page(document, numbered(located::sections(document, located)));
-        return located::as_located(document, located, page);
+        return found::on_first_sheet(document, located::as_located(document, located, page));
     }
     if let Some(task) = &document.task {
-        return front::page(document, numbered(task::sections(document, task)));
+        let page = front::page(document, numbered(task::sections(document, task)));
+        return found::on_first_sheet(document, page);
     }
     let sections = [
         section("Scope", front::scope(document)),
@@ -41,7 +42,7 @@ pub(super) fn sections(document: &Document) -> Page {
         section("Signatures and revisions", closing::signatures(document)),
         section("Provenance", closing::provenance(document)),
     ];
-    front::page(document, numbered(sections))
+    found::on_first_sheet(document, front::page(document, numbered(sections)))
 }
 
 fn numbered(sections: impl IntoIterator<Item = Section>) -> Vec<Section> {

@@ -30,6 +30,17 @@ pub struct MapPart {
     pub drawn: usize,
     /// The objects on the drawing that are not a column on the map.
     pub not_found: Vec<NotFound>,
+    /// The objects on the map that are neither columns nor on the drawing.
+    pub objects_not_drawn: Vec<NotDrawn>,
+}
+
+/// An object on the map that is neither a column nor on the drawing.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NotDrawn {
+    /// Its south-west corner.
+    pub low: Point,
+    /// Its north-east corner.
+    pub high: Point,
 }
 
 /// A column on the map.
@@ -140,8 +151,23 @@ impl MapPart {
             objects: map.others.len(),
             beyond_tether: past.fold.beyond_tether(),
             drawn: drawn.len(),
+            objects_not_drawn: map
+                .not_drawn(&shapes)
+                .into_iter()
+                .map(|[low, high]| NotDrawn { low, high })
+                .collect(),
             not_found: fates.iter().zip(&drawn).filter_map(lacks).collect(),
         })
+    }
+
+    /// Number of drawn objects with this on the map instead of a column.
+    pub(super) fn with_instead(&self, instead: Instead) -> usize {
+        self.not_found.iter().filter(|lack| lack.instead == instead).count()
+    }
+
+    /// Number of objects in which map and drawing differ: those that are not drawn, and drawn ones that are not there.
+    pub(super) fn differences(&self) -> usize {
+        self.not_drawn() + self.objects_not_drawn.len() + self.with_instead(Instead::FreeFloor)
     }
 
     /// Number of columns on the map that are not on the drawing.
@@ -154,6 +180,31 @@ impl MapPart {
         let drawn = self.columns.iter().filter_map(|column| column.drawn.as_ref());
         drawn.map(DrawnAs::distance_m).reduce(f64::max)
     }
+}
+
+/// An object on the map of a survey, for the files of a report.
+pub(super) struct OnMap {
+    /// A column with its number on the page, or another object.
+    pub(super) name: String,
+    pub(super) shape: Shape,
+    /// 95 % errors of the centre and of the radius of a column, metres.
+    pub(super) errors_95_m: Option<[f64; 2]>,
+}
+
+/// The objects on the map of a survey; `None` for a run that made no map.
+pub(super) fn on_map(past: &[PastRun]) -> Option<Vec<OnMap>> {
+    let map = past.last()?.fold.map()?;
+    let columns = (1..).zip(&map.columns).map(|(number, column): (usize, _)| OnMap {
+        name: format!("column {number}"),
+        shape: column.shape(),
+        errors_95_m: Some(column.errors_95_m()),
+    });
+    let others = (1..).zip(&map.others).map(|(number, shape): (usize, _)| OnMap {
+        name: format!("object {number}"),
+        shape: shape.clone(),
+        errors_95_m: None,
+    });
+    Some(columns.chain(others).collect())
 }
 
 /// Draws the map that a survey has made; `None` if its cells are damaged.
@@ -204,7 +255,7 @@ pub(super) fn picture(layers: &Layers<'_>, map: &SurveyMap, part: &MapPart) -> O
     if part.drawn > 0 {
         let mark = |stroke: &str| dot(&format!(r#"{dashed} stroke="{stroke}""#));
         entries.push(legend(mark(ink), "on the drawing", part.drawn.to_string()));
-        let gone = part.not_found.iter().filter(|lack| lack.instead == Instead::FreeFloor).count();
+        let gone = part.with_instead(Instead::FreeFloor);
         entries.push(legend(mark(missed), "on the drawing, but not there", gone.to_string()));
     }
     entries.push(maps::start_or_anchor(&layers.run.mission));

@@ -1,6 +1,9 @@
 //! A task other than scanning the floor.
 
-use super::{run_part::RunPart, survey::MapPart};
+use super::{
+    run_part::RunPart,
+    survey::{Instead, MapPart},
+};
 use crate::past_run::PastRun;
 use account::Tracking;
 use mission::TaskConfig;
@@ -91,7 +94,8 @@ impl TaskPart {
                 ("explored_percent", Some(percent(map.explored))),
                 ("columns", Some(map.columns.len() as f64)),
                 ("columns_not_drawn", Some(map.not_drawn() as f64)),
-                ("drawn_not_found", Some(map.not_found.len() as f64)),
+                ("objects_not_drawn", Some(map.objects_not_drawn.len() as f64)),
+                ("drawn_not_found", Some(map.with_instead(Instead::FreeFloor) as f64)),
                 ("column_moved_max_m", map.moved_max_m()),
                 ("places_beyond_tether", Some(map.beyond_tether as f64)),
             ],

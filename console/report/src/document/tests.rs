@@ -525,7 +525,9 @@ fn surveyed(has_map: bool) -> PastRun {
     let cells: String =
         (0..grid.len()).map(|cell| if grid.center(cell).x < 0.0 { "1f" } else { "1u" }).collect();
     let columns = vec![column(-0.95, 0.0), column(-0.5, -1.0)];
-    let map = Box::new(exploration::SurveyMap { grid, cells, columns, others: Vec::new(), explored: 0.5 });
+    let corners = [[-1.6, -1.0], [-1.2, -1.0], [-1.2, -0.8], [-1.6, -0.8]];
+    let pipe = Shape::Polygon { vertices: corners.map(|[x, y]| Point::new(x, y)).to_vec() };
+    let map = Box::new(exploration::SurveyMap { grid, cells, columns, others: vec![pipe], explored: 0.5 });
     let mut past = past_of(run, &[]);
     if has_map {
         past.fold.apply(&Event { tick: 1, t_s: 0.1, kind: EventKind::Mapped { map } });
@@ -541,7 +543,9 @@ fn a_survey_is_reported_with_its_map_its_columns_and_the_difference_to_the_drawi
     let page = html(&document);
     for words in [
         "make a map of the floor",
-        "3 objects on the drawing: 1 found as columns, 2 not. 1 column on the map not on the drawing.",
+        "3 objects on the drawing: 1 found as columns, 0 as other objects, 1 not there, 1 not seen. 1 column and 1 other \
+         object on the map are not on the drawing.",
+        "Objects on the map that are neither columns nor on the drawing",
         "C1: 5.0 cm from its drawn place (+5.0 cm east, 0.0 cm north), radius +1.0 cm",
         "free floor: the object is not there",
         "not seen: the drawing was not checked here",
@@ -556,11 +560,93 @@ fn a_survey_is_reported_with_its_map_its_columns_and_the_difference_to_the_drawi
     assert_eq!(map["columns"][0]["drawn"]["name"], "C1");
     assert_eq!(map["columns"][1].get("drawn"), None);
     assert_eq!(map["not_found"][0]["instead"], "free_floor");
+    assert_eq!(map["objects_not_drawn"][0]["low"], serde_json::json!([-1.6, -1.0]));
     let tables = csv::tables(&document, &runs);
+    let figures = ["explored_percent,50", "columns_not_drawn,1", "objects_not_drawn,1", "drawn_not_found,1"];
+    assert!(figures.iter().all(|figure| tables[0].contains(figure)), "{tables:?}");
+    // Column, other object and what is drawn but not there; the place that was not seen is no difference.
+    assert!(page.contains(r#"<div class="big">3<small> </small></div><div class="t">differences</div>"#));
+    // All files have the columns of the map under the numbers of the page, with their errors.
+    assert!(tables[3].contains(",column 1,-0.950,0.000,0.420,0.420,0.020,0.010"), "{}", tables[3]);
+    assert!(tables[3].contains(",object 1,"), "{}", tables[3]);
+    let features: serde_json::Value = serde_json::from_str(&geojson::geojson(&document, &runs)).unwrap();
+    let column = features["features"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|one| one["properties"]["source"] == "map" && one["properties"]["name"] == "column 1");
+    assert!(column.unwrap()["properties"]["center_95_m"].as_f64().unwrap() > 0.0);
+    assert!(dxf::dxf(&document, &runs).contains("column 1 "));
+}
+
+#[test]
+fn losses_are_on_the_first_sheet_and_contradict_a_statement_that_there_are_none() {
+    let mut document = Document::new(&[past()], Context::default()).unwrap();
+    let loss = |depth_mm: f64, x: f64| account::Finding {
+        t_s: 1.0,
+        run: 0,
+        at: Point::new(x, 0.5),
+        low: Point::new(x, 0.5),
+        high: Point::new(x + 0.02, 0.52),
+        error_m: 0.02,
+        covariance: nalgebra::Matrix2::identity() * 1e-4,
+        depth_mm,
+        depth_error_mm: 0.6,
+        readings: 4,
+    };
+    let sampling =
+        mission::Sampling { channels: 20, pitch_m: 0.005, thickness_mm: 8.0, sigma_mm: 0.3, threshold: 0.2 };
+    let mut thickness = thickness::Thickness {
+        kind: mission::InstrumentKind::Mfl,
+        sampling,
+        readings: 1000,
+        untestable: 0,
+        tested_m2: 9.0,
+        plates: vec![],
+        losses: vec![],
+        unread_m2: 0.0,
+        detections: None,
+        imported: vec![],
+    };
+    let mut with = |losses: Vec<account::Finding>, text: Option<&str>| {
+        thickness.losses = losses;
+        document.thickness = Some(thickness.clone());
+        document.inspection.indications = text.map(str::to_owned);
+        document.gate = gate::gate(&document);
+        (html(&document), document.gate[8].missing.join(" "))
+    };
+    let (page, missing) = with(vec![], Some("None above 20 % of the thickness"));
+    assert!(page.contains("The readings show no loss of 1.6 mm or more (20 % of 8 mm)."), "{page}");
+    assert_eq!(missing, "");
+    let (page, missing) =
+        with(vec![loss(2.0, 0.1), loss(7.2, 0.3)], Some("None above 20 % of the thickness"));
+    assert!(page.contains("The readings show 2 indications; the deepest: 7.2 ±0.6 of 8 mm"), "{page}");
     assert!(
-        tables[0].contains("explored_percent,50") && tables[0].contains("columns_not_drawn,1"),
-        "{tables:?}"
+        page.contains("at 0.30, 0.50 m") && page.contains("say about indications: `None above"),
+        "{page}"
     );
+    assert_eq!(missing, "inspection.indications_explained");
+    let (page, missing) = with(vec![loss(7.6, 0.3)], Some("Report NDT-7"));
+    assert!(page.contains("1 indication can go through the floor"), "{page}");
+    assert!(missing.contains("inspection.through_accepted"), "{missing}");
+}
+
+#[test]
+fn the_stated_day_of_the_inspection_is_on_the_page_and_decides_about_the_certificate() {
+    let day = |inspected_on: Option<&str>| {
+        let inspection = Inspection {
+            inspected_on: inspected_on.map(str::to_owned),
+            inspector_certificate_expires: Some("2026-11-26".into()),
+            ..Inspection::default()
+        };
+        let mut run = past();
+        run.began = Some("2026-11-30 04:01".into());
+        let document = Document::new(&[run], Context { inspection, ..Context::default() }).unwrap();
+        (html(&document), document.gate[11].missing.join(" "))
+    };
+    assert!(day(None).1.contains("expired on 2026-11-26, before the inspection on 2026-11-30"));
+    let (page, missing) = day(Some("2026-11-24"));
+    assert!(page.contains("inspected on 2026-11-24") && !missing.contains("expired"), "{missing}");
 }
 
 #[test]

@@ -89,8 +89,8 @@ pub(super) fn indications(
         error_m: Some(loss.error_m),
         plate: layers.plate_at(loss.at),
         kind: "metal loss".into(),
-        size_mm: Some(1000.0 * (loss.high - loss.low).max()),
-        depth_mm: Some(loss.depth_mm),
+        size_mm: Some(tenth(1000.0 * (loss.high - loss.low).max())),
+        depth_mm: Some(tenth(loss.depth_mm)),
         note: format!(
             "depth ±{:.1} mm; {:.1} of {nominal_mm} mm left; {} readings",
             loss.depth_error_mm,
@@ -99,6 +99,11 @@ pub(super) fn indications(
         ),
     };
     (first..).zip(&thickness.losses).map(indication).collect()
+}
+
+/// Rounds millimetres to tenths: a reading is less accurate.
+fn tenth(mm: f64) -> f64 {
+    (10.0 * mm).round() / 10.0
 }
 
 /// Draws the loss of metal on the tested floor.

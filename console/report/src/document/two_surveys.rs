@@ -61,6 +61,9 @@ pub struct SurveyPart {
     pub readings_sha256: Option<String>,
     /// The problems found with the files of the run.
     pub doubts: Vec<String>,
+    /// Where the survey was cut off, and who closed the run; absent for a run that reached its end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cut_off: Option<String>,
 }
 
 /// A loss of metal that both surveys show.

@@ -187,8 +187,20 @@ fn facts_that_contradict_the_scenario_that_was_flown_are_named_and_those_that_ad
         site: Some("Basel".into()),
         ..Inspection::default()
     };
-    assert_eq!(contradiction(&facts("T-09 "), &flown), None);
-    assert_eq!(contradiction(&Inspection::default(), &flown), None);
-    let said = contradiction(&facts("T-10"), &flown).unwrap();
+    assert_eq!(contradiction(&facts("T-09 "), &flown, None), None);
+    assert_eq!(contradiction(&Inspection::default(), &flown, Some(8.0)), None);
+    let said = contradiction(&facts("T-10"), &flown, None).unwrap();
     assert_eq!(said, r#"tank_id is "T-10", but "T-09" in the scenario of the run"#);
+}
+
+#[test]
+fn a_nominal_thickness_other_than_that_of_the_instrument_is_a_contradiction() {
+    let facts = |mm| Inspection { nominal_thickness_mm: Some(mm), ..Inspection::default() };
+    let flown = Inspection::default();
+    assert_eq!(contradiction(&facts(8.0), &flown, Some(8.0)), None);
+    assert_eq!(contradiction(&facts(6.0), &flown, None), None);
+    let said = contradiction(&facts(6.0), &flown, Some(8.0)).unwrap();
+    assert!(said.contains("nominal_thickness_mm is 6, but instrument.thickness_mm"), "{said}");
+    // The scenario may contradict itself, too.
+    assert!(contradiction(&facts(6.0), &facts(6.0), Some(8.0)).is_some());
 }

@@ -4,6 +4,16 @@ use super::*;
 use recording::JOURNAL_FILE;
 use std::fs;
 
+#[test]
+fn a_report_goes_beyond_a_journal_that_ends_before_it() {
+    let summary = |ticks, outcome| Summary { ticks: Some(ticks), outcome, ..Summary::default() };
+    let complete = Some(mission::Outcome::Complete);
+    assert!(goes_beyond(&summary(9, complete), &summary(3, None)));
+    assert!(goes_beyond(&summary(9, complete), &summary(9, None)));
+    assert!(!goes_beyond(&summary(9, complete), &summary(9, complete)));
+    assert!(!goes_beyond(&Summary::default(), &summary(3, None)));
+}
+
 fn write_report(folder: &Path, summary: &Summary) {
     RunFolder::take(folder).unwrap().write_report(summary).unwrap();
 }

@@ -239,11 +239,14 @@ pub(in crate::document) fn provenance(document: &Document) -> Vec<Block> {
                 format!("tankops {}, journal version {}", run.tankops_version, run.journal_version).into(),
             ),
             ("Scenario and seed", format!("{}, seed {}", run.scenario, run.seed).into()),
-            ("Parameters", run.parameters.join(", ").into()),
-            (
-                "Planner",
-                run.drivers.iter().map(|driver| driver.name.clone()).collect::<Vec<_>>().join("; ").into(),
-            ),
+        ];
+        // A survey has no planner.
+        if !run.drivers.is_empty() {
+            let drivers: Vec<String> = run.drivers.iter().map(|driver| driver.name.clone()).collect();
+            facts.push(("Parameters", run.parameters.join(", ").into()));
+            facts.push(("Planner", drivers.join("; ").into()));
+        }
+        facts.extend([
             (
                 "Journal, recording",
                 format!("{}, {}; {state}", bytes(files.journal_bytes), bytes(files.recording_bytes)).into(),
@@ -252,7 +255,7 @@ pub(in crate::document) fn provenance(document: &Document) -> Vec<Block> {
                 "To repeat",
                 format!("tankops verify {} recomputes the run and compares every event", run.run).into(),
             ),
-        ];
+        ]);
         facts.extend(files.recovered.as_ref().map(|how| ("Recovered", how.to_string().into())));
         blocks.push(Block::Facts(facts));
         let hashes = [

@@ -7,6 +7,7 @@ use super::{
         model::Document,
         page::{Block, Field, Page, Section, Share, Table, Todo, Value, Verdict},
         run_part::RunPart,
+        task::TaskPart,
         words::{number, number_of},
     },
     task,
@@ -32,7 +33,7 @@ pub(super) fn page(document: &Document, sections: Vec<Section>) -> Page {
     let is_end = |letter: char| letter.is_control() || matches!(letter, '\\' | '"');
     let css = |text: String| foreign::markup(&text).replace(is_end, " ");
     Page {
-        heading: "Tank floor inspection: coverage and position record",
+        heading: heading(document),
         banner: document.live.as_ref().map_or_else(String::new, vehicle::sentences),
         title: format!("Inspection report {tank} revision {}", document.revision),
         css: "",
@@ -59,6 +60,16 @@ pub(super) fn page(document: &Document, sections: Vec<Section>) -> Page {
     }
 }
 
+/// The title of the page.
+fn heading(document: &Document) -> &'static str {
+    match (&document.task, &document.thickness) {
+        (Some(TaskPart::Survey { .. }), _) => "Tank floor: map and position record",
+        (Some(_), _) => "Tank floor: task and position record",
+        (None, Some(_)) => "Tank floor inspection: thickness, coverage and position record",
+        (None, None) => "Tank floor inspection: coverage and position record",
+    }
+}
+
 /// The word at the head of every sheet.
 fn mark(document: &Document) -> &'static str {
     match (document.is_simulation, &document.live) {
@@ -72,6 +83,7 @@ fn fields(document: &Document) -> Vec<Field> {
     let facts = &document.inspection;
     let first = document.runs.first();
     let began = first.and_then(|run| run.began.clone());
+    let inspected = facts.inspected_on.as_ref().filter(|_| document.located.is_none());
     let time_s: f64 = document.runs.iter().map(|run| run.mission_time_s).sum();
     let field = |class, label, value: Value| Field { class, label, value, note: String::new() };
     let joined = |facts: &[(Option<&String>, &str)]| {
@@ -96,11 +108,12 @@ fn fields(document: &Document) -> Vec<Field> {
             joined(&[(facts.client.as_ref(), "client"), (facts.site.as_ref(), "site")]),
         ),
         field("w2 e f", "Document number", document.number.clone().into()),
-        field(
-            "",
-            "Date of the run (UTC)",
-            began.map_or_else(|| Value { text: None, missing: Some("date".into()) }, Value::from),
-        ),
+        Field {
+            class: "",
+            label: "Date of the run (UTC)",
+            value: began.map_or_else(|| Value { text: None, missing: Some("date".into()) }, Value::from),
+            note: inspected.map(|day| format!("inspected on {day}")).unwrap_or_default(),
+        },
         field("", "Mission time", account::clock(time_s).into()),
         field("", "Revision", document.revision.clone().into()),
         field("", "Language", "en".into()),

@@ -4,7 +4,7 @@ use super::{
     super::{
         model::Document,
         page::{Block, Share, Table, Value, per_cent, picture},
-        survey::{ColumnPart, MapPart},
+        survey::{ColumnPart, Instead, MapPart},
         words::{cm, number},
     },
     task::figures_table,
@@ -16,7 +16,6 @@ pub(super) fn shares(map: &MapPart) -> Vec<Share> {
     let share =
         |value: String, unit: &'static str, of: &'static str, about: String| Share { value, unit, of, about };
     let worst_m = map.columns.iter().map(|column| column.center_95_m).reduce(f64::max);
-    let differences = map.not_drawn() + map.not_found.len();
     let errors = worst_m.map_or_else(
         || "none was found".to_owned(),
         |worst_m| format!("95 % error of the centre at most {} cm", cm(worst_m)),
@@ -25,10 +24,10 @@ pub(super) fn shares(map: &MapPart) -> Vec<Share> {
         share(per_cent(map.explored), "%", "explored", "of the floor within the wall".into()),
         share(map.columns.len().to_string(), "", "columns", errors),
         share(
-            differences.to_string(),
+            map.differences().to_string(),
             "",
             "differences",
-            "columns that are not drawn, and drawn objects that were not found as columns".into(),
+            "columns and other objects that are not drawn, and drawn objects that are not there".into(),
         ),
     ]
 }
@@ -102,11 +101,32 @@ fn on_drawing(column: &ColumnPart) -> String {
     )
 }
 
-/// The drawn objects that were not found, and how many columns are not drawn.
+/// How many columns and how many other objects on the map are not drawn.
+fn not_drawn(map: &MapPart) -> [String; 2] {
+    [(map.not_drawn(), "column"), (map.objects_not_drawn.len(), "other object")]
+        .map(|(count, what)| counted(count as u64, what))
+}
+
+/// The table of the objects that are neither columns nor drawn; `None` without any.
+fn objects_not_drawn(map: &MapPart) -> Option<Block> {
+    let mut table = Table::new(
+        "Objects on the map that are neither columns nor on the drawing",
+        &[("From x", "m", "r nw"), ("From y", "m", "r nw"), ("To x", "m", "r nw"), ("To y", "m", "r nw")],
+    );
+    table.is_slim = true;
+    for object in &map.objects_not_drawn {
+        let corners = [object.low.x, object.low.y, object.high.x, object.high.y];
+        table.row(corners.map(|m| Value::from(number(m, 2))).into());
+    }
+    (!map.objects_not_drawn.is_empty()).then_some(Block::Table(table))
+}
+
+/// The drawn objects that were not found, and the objects that are not drawn.
 fn difference(map: &MapPart) -> Vec<Block> {
     if map.drawn == 0 {
-        let found = counted(map.columns.len() as u64, "column");
-        return vec![Block::Note(format!("The drawing shows only the wall; {found} found are not on it."))];
+        let [columns, objects] = not_drawn(map);
+        let note = format!("The drawing shows only the wall; {columns} and {objects} found are not on it.");
+        return std::iter::once(Block::Note(note)).chain(objects_not_drawn(map)).collect();
     }
     let moved = map.moved_max_m().map_or_else(String::new, |moved_m| {
         format!(
@@ -114,14 +134,18 @@ fn difference(map: &MapPart) -> Vec<Block> {
             cm(moved_m)
         )
     });
+    let [columns, objects] = not_drawn(map);
     let summary = format!(
-        "{} on the drawing: {} found as columns, {} not. {} on the map not on the drawing.{moved}",
+        "{} on the drawing: {} found as columns, {} as other objects, {} not there, {} not seen. {columns} and {objects} \
+         on the map are not on the drawing.{moved}",
         counted(map.drawn as u64, "object"),
         map.drawn - map.not_found.len(),
-        map.not_found.len(),
-        counted(map.not_drawn() as u64, "column"),
+        map.with_instead(Instead::Object),
+        map.with_instead(Instead::FreeFloor),
+        map.with_instead(Instead::NotSeen),
     );
     let mut blocks = vec![Block::Note(summary)];
+    blocks.extend(objects_not_drawn(map));
     if map.not_found.is_empty() {
         return blocks;
     }

@@ -117,13 +117,16 @@ fn follow_ups(document: &Document) -> Vec<Block> {
 
 /// A place as one line.
 fn line_of(place: &FollowUp) -> String {
-    let of = |value: Option<f64>, decimals, unit: &str| {
-        value.map(|value| format!("{} {unit}", number(value, decimals)))
-    };
-    let size = of(place.depth_mm, 1, "mm").or(of(place.area_m2, 2, "m²")).unwrap_or_default();
+    let depth = place.depth_mm.map(|mm| format!("{} mm", number(mm, 1)));
+    let size = depth.or_else(|| Some(format!("{} m²", area(place.area_m2?)))).unwrap_or_default();
     let plate = place.plate.as_deref().unwrap_or_default();
     let [x, y] = [place.at.x, place.at.y].map(|m| number(m, 2));
     format!("{}: {plate}; {x}, {y}; {size}", place.what)
+}
+
+/// An area in square metres; a small one is not 0.
+fn area(m2: f64) -> String {
+    if m2 > 0.0 && m2 < 0.005 { "below 0.01".to_owned() } else { number(m2, 2) }
 }
 
 fn table_of(places: &[FollowUp]) -> Table {
@@ -140,9 +143,7 @@ fn table_of(places: &[FollowUp]) -> Table {
         ],
     );
     table.is_slim = true;
-    let optional = |value: Option<f64>, decimals| {
-        value.map_or_else(|| "\u{2013}".to_owned(), |value| number(value, decimals))
-    };
+    let or_dash = |text: Option<String>| text.unwrap_or_else(|| "\u{2013}".to_owned());
     for place in places {
         table.row(vec![
             place.number.to_string().into(),
@@ -150,8 +151,8 @@ fn table_of(places: &[FollowUp]) -> Table {
             place.plate.clone().unwrap_or_default().into(),
             number(place.at.x, 2).into(),
             number(place.at.y, 2).into(),
-            optional(place.area_m2, 2).into(),
-            optional(place.depth_mm, 1).into(),
+            or_dash(place.area_m2.map(area)).into(),
+            or_dash(place.depth_mm.map(|mm| number(mm, 1))).into(),
         ]);
     }
     table
@@ -180,4 +181,14 @@ fn detections(thickness: &Thickness, found: &Detections) -> Table {
         ]);
     }
     table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_small_area_is_not_shown_as_none() {
+        assert_eq!([0.0004, 0.0, 0.006, 1.234].map(area), ["below 0.01", "0.00", "0.01", "1.23"]);
+    }
 }

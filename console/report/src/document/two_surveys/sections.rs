@@ -77,14 +77,35 @@ fn verdict(comparison: &TwoSurveys) -> Verdict {
             number(high, 2)
         )
     });
+    let cut_off = [("first", &comparison.first), ("second", &comparison.second)].into_iter();
+    let cut_off = cut_off.filter_map(|(which, part)| {
+        let why = part.cut_off.as_ref()?;
+        Some(format!(
+            "The {which} survey is not whole: {why}. Only floor that both surveys tested is compared."
+        ))
+    });
+    let cause: Vec<String> = cut_off.chain((!fastest.is_empty()).then_some(fastest)).collect();
+    let reached = comparison.due.as_ref().map(|due| due.outlook).filter(|outlook| outlook.reached > 0);
+    let reached_text = reached.map_or_else(String::new, |outlook| {
+        format!(
+            "{} of the second survey {} reached the least thickness of {} mm. ",
+            counted(outlook.reached as u64, "indication"),
+            if outlook.reached == 1 { "has" } else { "have" },
+            number(outlook.premises.minimum_mm, 1)
+        )
+    });
     let is_worse = grown > 0 || comparison.new.iter().any(Single::is_alone);
     Verdict {
-        class: if is_worse { "part" } else { "" },
+        class: match (reached, is_worse) {
+            (Some(_), _) => "bad",
+            (None, true) => "part",
+            (None, false) => "",
+        },
         lead: format!(
-            "{grown} of {all} indications that both surveys show grew by more than their 95 % error; {} are new.",
+            "{reached_text}{grown} of {all} indications that both surveys show grew by more than their 95 % error; {} are new.",
             comparison.new.iter().filter(|one| one.is_alone()).count()
         ),
-        cause: fastest,
+        cause: cause.join(" "),
     }
 }
 

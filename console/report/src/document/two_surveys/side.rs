@@ -75,6 +75,7 @@ impl<'a> Side<'a> {
             journal_sha256: past.files.journal_sha256.clone(),
             readings_sha256: past.files.readings_sha256.clone(),
             doubts: past.files.doubts.clone(),
+            cut_off: past.cut_off(),
         };
         let is_simulation = layers.run.measured.is_none() && past.summary.vehicle.is_none();
         Ok(Self { part, survey, date, is_simulation, judge, floor: layers.floor() })
