@@ -11,9 +11,13 @@ use world::{Obstacle, ObstacleMap};
 /// Half the thickness of the cable, metres.
 const CABLE_M: f64 = 0.01;
 /// Distance by which the faces of a polygon are moved inward before it is grown by the radius of its corners, as a share of
-/// this radius; and at most, as a share of half its thickness.
+/// this radius; and at most, as a share of half its thickness: the inscribed circle of a triangle has a radius of two thirds
+/// of it.
 const FACE_SHARE: f64 = 0.7;
-const THIN_SHARE: f64 = 0.9;
+const THIN_SHARE: f64 = 0.6;
+/// Radius of a rounded corner, in links. At 1.2, a node turns the cable by at most 50 degrees; with a friction of 0.5, the
+/// pull then grows by 4 % more than round a smooth curve.
+const ROUND_LINKS: f64 = 1.2;
 
 /// The wall and the obstacles.
 #[derive(Clone)]
@@ -56,7 +60,10 @@ impl Surfaces {
     /// corner, and the next link would press them against the face instead of drawing them round the corner.
     pub fn new(boundary: &Boundary, obstacles: &[Obstacle], link_m: f64) -> Self {
         let solid = |obstacle: &Obstacle| {
-            parts_of(&obstacle.shape).into_iter().map(|part| Solid::rounded(part, link_m)).collect()
+            parts_of(&obstacle.shape)
+                .into_iter()
+                .map(|part| Solid::rounded(part, ROUND_LINKS * link_m))
+                .collect()
         };
         let solids = obstacles.iter().map(solid);
         Self {
@@ -112,18 +119,25 @@ impl Solid {
             Part::Polygon { vertices } => vertices,
         };
         let inward_m = (FACE_SHARE * radius_m).min(THIN_SHARE * inner_m(vertices));
-        let n = vertices.len();
+        let (n, middle) = (vertices.len(), part.middle());
         let corner = |k: usize| {
             let (before, at, after) = (vertices[(k + n - 1) % n], vertices[k], vertices[(k + 1) % n]);
-            let [one, other] = [before - at, after - at].map(|side| geometry::direction_or(side, Vector::x()));
+            let [one, other] =
+                [before - at, after - at].map(|side| geometry::direction_or(side, Vector::x()));
             let inward = geometry::direction_or(one + other, Vector::new(-other.y, other.x));
             // The sine of half the angle of the corner.
             let sine = inward.perp(&one).abs().max(1e-6);
-            at + inward * (inward_m / sine).min(radius_m)
+            let moved = at + inward * (inward_m / sine).min(radius_m);
+            // Beside a short edge, this may lead out on the other side.
+            if part.distance(moved).0 <= 0.0 {
+                return moved;
+            }
+            let to_middle = middle - at;
+            at + to_middle * (radius_m / to_middle.norm()).min(1.0)
         };
         let core = convex_hull(&(0..n).map(corner).collect::<Vec<_>>());
         let core = match core[..] {
-            [] => Part::disc(geometry::shape::mean_of(vertices), 0.0),
+            [] => Part::disc(middle, 0.0),
             [a] => Part::disc(a, 0.0),
             [a, b] => Part::segment(a, b),
             _ => Part::Polygon { vertices: core },

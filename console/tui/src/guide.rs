@@ -194,8 +194,10 @@ fn remains(cause: &Cause) -> &'static str {
 /// The remedies that apply to an alarm now.
 pub fn remedies<'a>(cause: &Cause, of: &'a Run) -> impl Iterator<Item = &'static Remedy> + use<'a> {
     let is_active = of.alarms.get(cause).is_none_or(Alarm::is_active);
-    // A cleared alarm needs neither patience nor the end of the mission.
-    let stays = |remedy: &Remedy| remedy.action.is_some_and(|action| action != ActionId::Abort);
+    // A cleared alarm needs neither patience nor a hold, nor the end of the mission.
+    let stays = |remedy: &Remedy| {
+        remedy.action.is_some_and(|action| !matches!(action, ActionId::Abort | ActionId::Hold))
+    };
     let applies = move |remedy: &&Remedy| remedy.when.holds(of) && (is_active || stays(remedy));
     meaning(cause, of).remedies.iter().filter(applies)
 }

@@ -63,10 +63,14 @@ pub(crate) fn advice(model: &Model, cause: &Cause) -> Vec<&'static str> {
 fn station(model: &Model, cause: &Cause) -> Option<Step> {
     let run = &model.live.run;
     let excluded = run.position.fix.iter().flat_map(|fix| &fix.excluded);
+    let by_order = |id: StationId| {
+        excluded.clone().any(|(other, why)| *other == id && *why == Exclusion::ByOrder)
+    };
+    // Once the ranges agree again, every station may be sound.
+    let is_active = run.alarms.get(cause).is_some_and(Alarm::is_active);
     let (id, why) = match cause {
-        Cause::Station(id) => (*id, String::new()),
-        // Once the ranges agree again, every station may be sound.
-        Cause::Contradiction if run.alarms.get(cause).is_some_and(Alarm::is_active) => {
+        Cause::Station(id) if is_active || by_order(*id) => (*id, String::new()),
+        Cause::Contradiction if is_active => {
             let (id, residual_m) = largest_residual(model)?;
             (id, format!(" (largest residual, {residual_m:+.2} m)"))
         }
@@ -74,7 +78,7 @@ fn station(model: &Model, cause: &Cause) -> Option<Step> {
     };
     let name = run.station_name(id);
     let name = name.trim_start_matches("station ");
-    let is_excluded = excluded.clone().any(|(other, why)| *other == id && *why == Exclusion::ByOrder);
+    let is_excluded = by_order(id);
     let text = if is_excluded {
         format!("Use station {name} again.")
     } else {

@@ -251,7 +251,9 @@ pub(super) fn begins(model: &Model) -> Option<String> {
     Some(if model.live.scanned_before.is_some() {
         format!("The scan resumes at {at}, after {after_m} m; {again_m2} m² are scanned a second time.")
     } else {
-        format!("The scan begins at {at}, after {after_m} m; {again_m2} m² that were not requested are scanned, too.")
+        format!(
+            "The scan begins at {at}, after {after_m} m; {again_m2} m² that were not requested are scanned, too."
+        )
     })
 }
 
