@@ -60,6 +60,11 @@ fn asked(facts: &[(&str, &Option<String>)]) -> Vec<String> {
     facts.iter().filter_map(lack).collect()
 }
 
+/// Returns the problems of facts about the scanning instrument, which are required if it was part of the work.
+fn of_instrument(document: &Document, facts: &[(&str, &Option<String>)]) -> Vec<String> {
+    if document.uses_instrument() { asked(facts) } else { given(facts) }
+}
+
 /// Returns the problems of optional facts: those without content.
 fn given(facts: &[(&str, &Option<String>)]) -> Vec<String> {
     facts.iter().filter_map(|(key, fact)| empty(key, fact.as_ref()?)).collect()
@@ -103,7 +108,8 @@ fn tank(document: &Document) -> Answered {
         n => counted(n as u64, "plate"),
     };
     let mut lacks = asked(&[("tank_id", &facts.tank_id), ("drawing", &facts.drawing)]);
-    lacks.extend(facts.nominal_thickness_mm.is_none().then(|| "inspection.nominal_thickness_mm".to_owned()));
+    let is_thickness_missing = document.uses_instrument() && facts.nominal_thickness_mm.is_none();
+    lacks.extend(is_thickness_missing.then(|| "inspection.nominal_thickness_mm".to_owned()));
     lacks.extend(given(&[("client", &facts.client), ("site", &facts.site), ("datum_crs", &facts.datum_crs)]));
     decided(document, TANK, (format!("{}, {plates}", document.size), lacks))
 }
@@ -128,7 +134,8 @@ fn scope(document: &Document) -> Answered {
 
 fn equipment(document: &Document) -> Answered {
     let facts = &document.inspection;
-    let mut lacks = asked(&[("robot", &facts.robot), ("instrument", &facts.instrument)]);
+    let mut lacks = asked(&[("robot", &facts.robot)]);
+    lacks.extend(of_instrument(document, &[("instrument", &facts.instrument)]));
     lacks.extend(given(&[("operator", &facts.operator)]));
     if let Some(located) = &document.located {
         return (located::equipment(document, located), lacks);
@@ -144,10 +151,10 @@ fn equipment(document: &Document) -> Answered {
 
 fn calibration(document: &Document) -> Answered {
     let facts = &document.inspection;
-    let mut lacks = asked(&[
-        ("calibration_before", &facts.calibration_before),
-        ("calibration_after", &facts.calibration_after),
-    ]);
+    let mut lacks = of_instrument(
+        document,
+        &[("calibration_before", &facts.calibration_before), ("calibration_after", &facts.calibration_after)],
+    );
     // Pulses that the stations sent in the run are such a check, if all of them agree with the survey.
     let mut pulses = pulse_tests(document).peekable();
     if pulses.peek().is_none() || !pulses.all(|test| test.agrees) {
@@ -258,6 +265,9 @@ fn accuracy(document: &Document) -> Answered {
 fn indications(document: &Document) -> Answered {
     let stated = document.inspection.indications.clone();
     let placed = document.indications.len();
+    if placed == 0 && stated.is_none() && !document.uses_instrument() {
+        return no_scan();
+    }
     if placed == 0 && stated.is_none() {
         let lacks = vec!["inspection.indications, or an indications file (--indications)".to_owned()];
         return (String::new(), lacks);

@@ -83,6 +83,12 @@ pub struct Document {
 }
 
 impl Document {
+    /// Whether the scanning instrument was part of the work: it had to scan, gave readings, or the file with indications
+    /// is from it.
+    pub(super) fn uses_instrument(&self) -> bool {
+        self.task.is_none() || self.thickness.is_some() || !self.indications.is_empty()
+    }
+
     /// The open items of the gate; a report can be signed once there are none.
     pub fn open_items(&self) -> impl Iterator<Item = &GateItem> {
         self.gate.iter().filter(|item| !item.is_answered)

@@ -496,6 +496,12 @@ fn a_run_that_was_not_there_to_scan_missed_no_floor_in_any_format() {
         let unwanted =
             ["inspection.missed_accepted", "inspection.critical_zone_accepted", "inspection.plates_waiver"];
         assert!(asked.iter().all(|key| !unwanted.contains(&key.as_str())), "{asked:?}");
+        // The scanning instrument was not part of the work.
+        let of_instrument = ["instrument", "calibration_before", "calibration_after", "nominal_thickness_mm"];
+        for key in of_instrument.map(|key| format!("inspection.{key}")) {
+            assert!(!asked.contains(&&key) && !page.contains(&key), "{key}");
+        }
+        assert!(asked.iter().all(|key| !key.contains("indications")), "{asked:?}");
         for section in 1..=9 {
             assert!(page.contains(&format!(r#"<h2 id="s{section}">"#)), "section {section}");
         }

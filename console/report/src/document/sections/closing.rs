@@ -14,20 +14,26 @@ pub(in crate::document) fn equipment(document: &Document) -> Vec<Block> {
     let facts = &document.inspection;
     let floor = &document.floor;
     let thickness = facts.nominal_thickness_mm.map(|mm| format!("{mm} mm"));
-    let mut blocks = vec![Block::Facts(vec![
-        ("Robot", Value::fact(facts.robot.as_ref(), "robot")),
+    let of_instrument = [
         (
             "Instrument",
             Value::with_fact(format!("swath {} m", floor.swath_m), facts.instrument.as_ref(), "instrument"),
         ),
         ("Calibration before", Value::fact(facts.calibration_before.as_ref(), "calibration_before")),
         ("Calibration after", Value::fact(facts.calibration_after.as_ref(), "calibration_after")),
+        ("Nominal thickness of the floor", Value::fact(thickness.as_ref(), "nominal_thickness_mm")),
+    ];
+    let mut equipment = vec![("Robot", Value::fact(facts.robot.as_ref(), "robot"))];
+    // A fact that was given is shown, even if it is not required.
+    let is_shown = |(_, value): &(&str, Value)| document.uses_instrument() || value.missing.is_none();
+    equipment.extend(of_instrument.into_iter().filter(is_shown));
+    equipment.extend([
         ("Stations: survey and pulse test", station_check(document)),
         ("Speed of sound", Value::fact(facts.sound_speed.as_ref(), "sound_speed")),
-        ("Nominal thickness of the floor", Value::fact(thickness.as_ref(), "nominal_thickness_mm")),
         ("Procedure", Value::fact(facts.procedure.as_ref(), "procedure")),
         ("Operator", Value::fact(facts.operator.as_ref(), "operator")),
-    ])];
+    ]);
+    let mut blocks = vec![Block::Facts(equipment)];
     for run in document.runs.iter().filter(|run| !run.stations.is_empty()) {
         let of = if document.runs.len() > 1 { format!(" ({})", run.run) } else { String::new() };
         let has_clocks = run.stations.iter().any(|station| station.clock_offset_m.is_some());
