@@ -15,8 +15,8 @@ const CABLE_M: f64 = 0.01;
 /// of it.
 const FACE_SHARE: f64 = 0.7;
 const THIN_SHARE: f64 = 0.6;
-/// Radius of a rounded corner, in links. At 1.2, a node turns the cable by at most 50 degrees; with a friction of 0.5, the
-/// pull then grows by 4 % more than round a smooth curve.
+/// Radius of a rounded corner, in links. A node then turns the cable by at most 50 degrees; with a friction of 0.5, the pull
+/// grows by 4 % more than round a smooth curve. With 0.8 links, cables stuck on columns 8 cm thick.
 const ROUND_LINKS: f64 = 1.2;
 
 /// The wall and the obstacles.
@@ -60,10 +60,7 @@ impl Surfaces {
     /// corner, and the next link would press them against the face instead of drawing them round the corner.
     pub fn new(boundary: &Boundary, obstacles: &[Obstacle], link_m: f64) -> Self {
         let solid = |obstacle: &Obstacle| {
-            parts_of(&obstacle.shape)
-                .into_iter()
-                .map(|part| Solid::rounded(part, ROUND_LINKS * link_m))
-                .collect()
+            parts_of(&obstacle.shape).into_iter().map(|part| Solid::rounded(part, link_m)).collect()
         };
         let solids = obstacles.iter().map(solid);
         Self {
@@ -108,10 +105,12 @@ impl Surfaces {
 }
 
 impl Solid {
-    /// A part whose corners have at least a given radius, metres. Each corner is moved inward, and everything is grown by
-    /// the radius again. The rounded outline passes through corners of up to 90 degrees, contains the part, and its faces
-    /// are about a third of the radius outside those of the part.
-    fn rounded(part: Part, radius_m: f64) -> Self {
+    /// A part with round corners for a cable whose links have a given length, metres. Each corner is moved inward, and
+    /// everything is grown by the radius again. The rounded outline contains the part, passes through corners of up to 90
+    /// degrees of thick parts, and its faces are about a third of the radius outside those of the part. A thin part becomes
+    /// thicker, up to the radius on each side.
+    fn rounded(part: Part, link_m: f64) -> Self {
+        let radius_m = ROUND_LINKS * link_m;
         let vertices = match &part {
             Part::Capsule { half_width_m, .. } => {
                 return Self { keep_m: (radius_m - half_width_m).max(CABLE_M), core: part };
@@ -173,12 +172,12 @@ mod tests {
         #[test]
         fn a_rounded_part_contains_the_part_and_is_little_larger(
             at in prop::collection::vec((-1.0..1.0_f64, -1.0..1.0_f64), 3..9),
-            radius_m in 0.02..0.3_f64,
+            link_m in 0.02..0.3_f64,
         ) {
             let vertices = convex_hull(&at.iter().map(|(x, y)| Point::new(*x, *y)).collect::<Vec<_>>());
             prop_assume!(vertices.len() >= 3);
             let part = Part::Polygon { vertices: vertices.clone() };
-            let solid = Solid::rounded(part.clone(), radius_m);
+            let solid = Solid::rounded(part.clone(), link_m);
             for (a, b) in polyline::edges(&vertices) {
                 for share in [0.0, 0.3, 0.5, 0.8] {
                     prop_assert!(solid.touch(a + (b - a) * share).gap_m < 1e-9);
@@ -187,7 +186,7 @@ mod tests {
             for k in 0..40 {
                 let far = Point::origin() + geometry::unit_vector(f64::from(k) * 0.157) * 2.0;
                 let gap_m = part.distance(far).0 - solid.touch(far).gap_m;
-                prop_assert!((-1e-9..=radius_m + 1e-9).contains(&gap_m), "{gap_m}");
+                prop_assert!((-1e-9..=1.2 * link_m + 1e-9).contains(&gap_m), "{gap_m}");
             }
         }
     }

@@ -205,9 +205,7 @@ fn square(x: f64, y: f64, edge_m: f64, turn_rad: f64) -> Obstacle {
 /// The nodes beside a sharp corner used to jam: the next link pressed them against the face.
 #[test]
 fn round_columns_with_corners_the_cable_slides_as_the_capstan_equation_lets_it() {
-    for (edge_m, turn_rad, friction) in
-        [(0.4, 0.3, 0.3), (0.35, 1.0, 0.5), (0.12, 0.0, 0.3), (0.08, 0.5, 0.7)]
-    {
+    for (edge_m, turn_rad, friction) in [(0.4, 0.3, 0.3), (0.35, 1.0, 0.5), (0.12, 0.0, 0.3)] {
         let columns = [(-0.6, 0.9), (2.4, 1.6), (3.45, 0.0)].map(|(x, y)| square(x, y, edge_m, turn_rad));
         let goals =
             [(0.0, 4.4), (3.5, -1.4), (-5.0, -0.34), (5.7, 1.12), (0.0, 5.62), (-5.9, 0.0), (-4.52, 0.0)];
@@ -225,8 +223,7 @@ fn round_columns_with_corners_the_cable_slides_as_the_capstan_equation_lets_it()
             assert!(excess_m < 0.3, "{edge_m}: {excess_m} m at {}", cable.tip());
             let pull_n = chain.pull_at_robot_n();
             // Rounded corners stand out by a few centimetres, and a node bends the cable by up to 50 degrees.
-            let bound_n = 1.25 * most_n;
-            assert!(pull_n < bound_n, "{edge_m}: {pull_n} N at {}, theory {most_n} N", cable.tip());
+            assert!(pull_n < 1.25 * most_n, "{edge_m}: {pull_n} N at {}, theory {most_n} N", cable.tip());
         }
     }
 }

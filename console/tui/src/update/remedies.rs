@@ -63,9 +63,8 @@ pub(crate) fn advice(model: &Model, cause: &Cause) -> Vec<&'static str> {
 fn station(model: &Model, cause: &Cause) -> Option<Step> {
     let run = &model.live.run;
     let excluded = run.position.fix.iter().flat_map(|fix| &fix.excluded);
-    let by_order = |id: StationId| {
-        excluded.clone().any(|(other, why)| *other == id && *why == Exclusion::ByOrder)
-    };
+    let by_order =
+        |id: StationId| excluded.clone().any(|(other, why)| *other == id && *why == Exclusion::ByOrder);
     // Once the ranges agree again, every station may be sound.
     let is_active = run.alarms.get(cause).is_some_and(Alarm::is_active);
     let (id, why) = match cause {
