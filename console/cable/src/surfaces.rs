@@ -1,7 +1,7 @@
 //! The solid objects that the cable bears on.
 
 use geometry::{
-    Boundary, Point, Shape, Vector,
+    Boundary, Point, Vector,
     convex::{Part, away_from, parts_of},
     polyline,
     shape::convex_hull,

@@ -157,7 +157,7 @@ pub fn guide(cause: &Cause) -> Guide {
 pub fn effect(alarm: &Alarm, of: &Run) -> String {
     let guide = meaning(&alarm.cause, of);
     if !alarm.is_active() {
-        return remains(&alarm.cause).into();
+        return remains(&alarm.cause, of.covers()).into();
     }
     let hold = match of.phase() {
         _ if guide.holds.is_empty() => "",
@@ -172,9 +172,10 @@ pub fn effect(alarm: &Alarm, of: &Run) -> String {
     sentences.collect::<Vec<_>>().join(" ")
 }
 
-/// The consequence of an alarm after its cause is gone, with the next step.
-fn remains(cause: &Cause) -> &'static str {
+/// The consequence of an alarm after its cause is gone, with the next step. Only a mission that scans can have missed floor.
+fn remains(cause: &Cause, scans: bool) -> &'static str {
     match cause {
+        _ if !scans => "None any more: the cause is gone.",
         Cause::DeadChannel => {
             "The cause is gone. Floor that the channel passed while it was dead stays missed floor until it is rescanned. \
              After the mission, press <rescan> on the screen Result: it makes a mission for the missed floor."
@@ -230,14 +231,16 @@ mod tests {
     #[test]
     fn an_alarm_that_cost_floor_says_so_after_its_cause_is_gone() {
         for cause in [Cause::DeadChannel, Cause::Bias(StationId(1))] {
-            let words = remains(&cause);
+            let words = remains(&cause, true);
             assert!(
                 words.contains("until it is rescanned") && words.contains("<rescan> on the screen Result"),
                 "{words}"
             );
             assert!(!words.contains("None any more"), "{words}");
         }
-        assert_eq!(remains(&Cause::Disk), "None any more: the cause is gone.");
+        for (cause, scans) in [(Cause::Disk, true), (Cause::PositionLost, false)] {
+            assert_eq!(remains(&cause, scans), "None any more: the cause is gone.");
+        }
     }
 
     #[test]

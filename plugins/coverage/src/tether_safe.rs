@@ -190,7 +190,7 @@ fn warn(worth: &Worth, preferences: &Preferences, scope: &Scope<'_>, scans_enoug
         warn(&format!("not certified: {}", worth.certificate.reasons.join("; ")));
     } else if preferences.pull_share(&Strain::from(&worth.certificate)) > 1.0 {
         warn(&format!("no candidate needs less pull: {}", worth.certificate.warnings.join("; ")));
-    } else if !worth.meets(preferences) {
+    } else if has_reel && !worth.meets(preferences) {
         warn("no candidate keeps the cable within the preferred length and wrap");
     }
     // The console counts by the mission's cells; here, a cell counts only if the lanes sweep the whole of it.

@@ -226,6 +226,11 @@ impl Live {
         self.result.as_ref()?.summary.floor.as_ref()?.requested.as_ref()
     }
 
+    /// Whether the mission continues earlier runs.
+    pub fn is_rescan(&self) -> bool {
+        !self.earlier.is_empty() || self.scanned_before.is_some()
+    }
+
     /// Whether the run has ended and did not have to scan, so that its result says nothing about the floor.
     pub fn is_without_scan(&self) -> bool {
         let has_floor = self.floor().is_some_and(|floor| !floor.is_of_no_scan());

@@ -170,7 +170,8 @@ fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
         }
         Overlay::ZoneDraft(draft) => {
             let drawn = zones::drawn_words(model).into_iter();
-            std::iter::once(drawing(draft.form)).chain(drawn).chain(["Mouse: drag.".into()]).collect()
+            let by_mouse = model.ui.mouse.then(|| "Mouse: drag.".into());
+            std::iter::once(drawing(draft.form)).chain(drawn).chain(by_mouse).collect()
         }
         Overlay::Confirm(Ask::Set { key, value, .. }) => setting::clauses(model, key, value, has_progress),
         Overlay::Confirm(Ask::Promote) => {
@@ -248,7 +249,7 @@ pub(super) fn begins(model: &Model) -> Option<String> {
     let resumption = model.live.left_out()?.resumption?;
     let (at, again_m2) = (text::place(resumption.at), text::number(resumption.again_m2, 1));
     let after_m = text::number(resumption.after_m, 1);
-    Some(if model.live.scanned_before.is_some() {
+    Some(if model.live.is_rescan() {
         format!("The scan resumes at {at}, after {after_m} m; {again_m2} m² are scanned a second time.")
     } else {
         format!(
@@ -297,7 +298,7 @@ fn zone_cost(model: &Model) -> String {
         path_m => format!("It blocks {path_m} m of the plan; the robot replans."),
     };
     let [closed, lost] = [cost.closed_m2, cost.lost_m2].map(|area_m2| text::number(area_m2, 2));
-    let held = if cost.holds { "The hull is in it: HOLD at once. " } else { "" };
+    let held = if cost.holds { "The hull is in it: HOLD at once, if it still is. " } else { "" };
     let offer = if cost.drops_offer { " The better plan is dropped." } else { "" };
     let back = if cost.blocks_way_back { "It blocks the way back along the tether. " } else { "" };
     format!(

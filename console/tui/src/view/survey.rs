@@ -47,31 +47,23 @@ fn summary(look: &Look, survey: &Survey, columns: usize) -> Vec<(u8, Line<'stati
         vec![(0, look.line([bar, (Role::Text, format!(" {share} % explored"))]))]
     };
     let mut lines = explored;
-    lines.push(row(1, "frontiers", frontiers(survey, room)));
+    lines.push(row(1, "frontiers", frontiers(look, survey, room)));
     lines.push(row(2, "way", way(look, survey, here, room)));
     let beyond = survey.way.as_ref().map_or(0, |way| way.beyond_tether);
     if beyond > 0 {
         lines.push(row(4, "left out", format!("{} beyond the tether", text::counted(beyond, "place"))));
     }
-    lines.push(row(
-        3,
-        "columns",
-        text::wording(
-            [
-                format!("{0} found; ± is the 95 % error", survey.columns.len()),
-                format!("{} found", survey.columns.len()),
-            ],
-            room,
-        ),
-    ));
+    lines.push(row(3, "columns", format!("{} found", survey.columns.len())));
     lines
 }
 
 /// The number of frontiers. The one to which the robot drives is at the end of its way.
-fn frontiers(survey: &Survey, room: usize) -> String {
+fn frontiers(look: &Look, survey: &Survey, room: usize) -> String {
     match survey.frontiers.len() {
         // Before the first way, the scans have not been searched for frontiers.
-        0 if survey.way.is_none() => text::wording(["not known yet".to_owned(), "-".to_owned()], room),
+        0 if survey.way.is_none() && !look.run.has_ended() => {
+            text::wording(["not known yet".to_owned(), "-".to_owned()], room)
+        }
         0 => "none left".into(),
         n => n.to_string(),
     }

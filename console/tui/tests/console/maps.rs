@@ -85,6 +85,7 @@ pub(crate) fn rescan() -> Screen {
     let resumption = Resumption { at: Point::new(4.2, -3.0), after_m: 12.34, again_m2: 5.6 };
     let part = LeftOut { is_part: true, resumption: Some(resumption), ..left_out() };
     screen.hear(RunMsg::LeftOut(ask, Box::new(part)));
+    screen.model.live.earlier = vec!["first".into()];
     screen
 }
 

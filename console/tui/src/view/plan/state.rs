@@ -147,7 +147,7 @@ fn ready(look: &Look, is_complete: bool) -> (Role, String) {
 /// Where a plan for a part of the floor begins to scan, beside its mark on the map.
 fn resumption(look: &Look) -> Option<String> {
     let begins = confirm::begins(look.model)?;
-    let of_rescan = look.model.live.scanned_before.is_some();
+    let of_rescan = look.model.live.is_rescan();
     let not_requested = " Missed areas that are small or out of reach are not requested.";
     Some(format!("R {begins}{}", if of_rescan { not_requested } else { "" }))
 }

@@ -94,7 +94,7 @@ pub(super) fn places(look: &Look, window: Window) -> Vec<Entry> {
     let resumes = resumption.map(|_| Entry {
         role: Role::Title,
         mark: labels::RESUMES.into(),
-        word: if look.model.live.scanned_before.is_some() { "scan resumes" } else { "scan begins" }.into(),
+        word: if look.model.live.is_rescan() { "scan resumes" } else { "scan begins" }.into(),
     });
     left_out.into_iter().chain(resumes).chain(entries).collect()
 }
