@@ -84,10 +84,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let put_down = floor.robot.as_ref().and_then(|robot| robot.start);
     let task =
         sections.mission.as_ref().and_then(|s| task::task(s, floor.boundary.as_ref(), radius_m, put_down));
-    require_start(&sections);
-    let is_survey = is_survey(&sections);
-    check_continued(root, is_survey);
-    require_scanner(&sections, is_survey);
+    let is_survey = check_kind(&sections);
     let start = start(floor.robot.as_ref(), task.as_ref());
     scatter(root, &mut floor, seed, start, task.as_ref());
     check_places(&sections, &floor, start, task.as_ref());
@@ -101,9 +98,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let expect = expect::expect(root, is_survey);
     let inspection = inspection::section(root);
     let rest = Rest::read(&sections, &floor);
-    if is_survey {
-        check_scanner_range(&sections, &floor, rest.as_ref());
-    }
+    check_scanner_range(&sections, &floor, rest.as_ref().filter(|_| is_survey));
     let (instrument, channel_faults) =
         instrument::instrument(root, plates.as_ref(), rest.as_ref().map(|rest| rest.cell_m)).unzip();
 
@@ -179,6 +174,15 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
 
 fn checklist(root: &Section<'_>) -> Option<Vec<String>> {
     if root.has("checklist") { root.table("checklist")?.texts("items") } else { Some(Vec::new()) }
+}
+
+/// Checks what a kind of mission requires and rules out; returns whether it is a survey.
+fn check_kind(sections: &Sections<'_>) -> bool {
+    require_start(sections);
+    let is_survey = is_survey(sections);
+    check_continued(sections.root, is_survey);
+    require_scanner(sections, is_survey);
+    is_survey
 }
 
 fn is_survey(sections: &Sections<'_>) -> bool {
