@@ -222,13 +222,15 @@ fn a_scanner_with_a_narrow_view_is_turned_around_first() {
     let result = Result::of(&scenario, &flown(&scenario));
     assert_eq!(result.outcome.as_ref().map(|outcome| outcome.0), Some(Outcome::Complete), "{result:?}");
     assert!(result.explored > 0.95 && result.collisions == 0, "{result:?}");
-    let posts: String = (0..8)
-        .map(|k| {
-            let (sin, cos) = (TAU * f64::from(k) / 8.0).sin_cos();
-            let at = format!("[{:.3}, {:.3}]", 0.4 * cos, 0.4 * sin);
-            format!("[[obstacles]]\nkind = \"circle\"\ncenter_m = {at}\nradius_m = 0.06\nknown = false\n\n")
-        })
-        .collect();
+    let mut posts = String::new();
+    for k in 0..8 {
+        let (sin, cos) = (TAU * f64::from(k) / 8.0).sin_cos();
+        let at = format!("[{:.3}, {:.3}]", 0.4 * cos, 0.4 * sin);
+        let _ = write!(
+            posts,
+            "[[obstacles]]\nkind = \"circle\"\ncenter_m = {at}\nradius_m = 0.06\nknown = false\n\n"
+        );
+    }
     let events = flown(&parsed(&tank(1).replacen("[robot]", &format!("{posts}[robot]"), 1)));
     let end = events.iter().find_map(|event| match &event.kind {
         EventKind::Ended { outcome, reason } => Some((*outcome, reason.clone())),
