@@ -81,7 +81,7 @@ mod tests {
     use crate::config::TetherConfig;
     use world::{Boundary, World, tether::Reel};
 
-    /// A tether with a friction of 0.98 N for each metre on the floor, which the reel pays out under 0.5 N.
+    /// A tether with a friction of 0.98 N for each metre on the floor.
     fn tether(reel_n: f64, robot_n: Option<f64>) -> Tether {
         let reel = Reel {
             mass_kg_per_m: 0.2,
@@ -102,10 +102,11 @@ mod tests {
 
     #[test]
     fn a_way_on_which_the_reel_or_the_robot_would_have_to_pull_too_much_is_refused() {
-        // At 6 m, taking up needs 5.9 N and paying out 6.4 N; a tenth of each limit is kept in reserve.
+        // At 6 m, taking up needs 5.9 N, and paying out 5.9 N more than the pull that the reel keeps; a tenth of each limit is
+        // kept in reserve.
         let way = [Point::new(0.0, 0.0), Point::new(6.0, 0.0)];
         for (reel_n, robot_n, is_borne) in
-            [(50.0, None, true), (50.0, Some(8.0), true), (50.0, Some(7.0), false), (6.0, Some(8.0), false)]
+            [(8.0, None, true), (8.0, Some(16.0), true), (8.0, Some(15.0), false), (6.0, Some(20.0), false)]
         {
             let tether = tether(reel_n, robot_n);
             assert_eq!(tether.bears_with_reserve(&way), is_borne, "{reel_n} N, {robot_n:?} N");
