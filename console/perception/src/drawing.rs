@@ -14,6 +14,8 @@ pub(crate) const GATE: f64 = 3.0;
 /// A point is compared with a surface unless it is farther away than its gate by this distance, metres: rounding must not
 /// decide.
 const SPARE_M: f64 = 1e-6;
+/// Largest squared distance of a corrected pose from the estimate, in squared standard deviations.
+const MOST_CHI2: f64 = 30.0;
 /// Number of rounds in which the pose is corrected with the points near the drawing.
 const ROUNDS: usize = 3;
 
@@ -109,6 +111,11 @@ impl<'a> Drawing<'a> {
             rays.correct(&step);
             corrected += step;
             information = normal;
+        }
+        // A scan that fits only somewhere else was compared with the wrong surfaces.
+        if (corrected.transpose() * prior * corrected)[(0, 0)] > MOST_CHI2 {
+            rays.correct(&-corrected);
+            return Corrected::not(pose);
         }
         Corrected {
             pose: pose.corrected(&information.try_inverse().unwrap_or_else(Matrix3::zeros)),

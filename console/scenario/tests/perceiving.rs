@@ -245,3 +245,12 @@ fn obstacles_are_found_in_random_tanks() {
     assert!(false_ones as u64 * 10 <= tanks);
     assert!(quantile(&mut tally.off_m, 0.95) <= 0.04 && quantile(&mut tally.off_radius_m, 0.95) <= 0.03);
 }
+
+/// In this tank, a scan was once compared with the wrong surfaces: it moved the pose by 0.4 m, and a drawn column appeared a
+/// second time.
+#[test]
+fn a_scan_that_fits_only_far_from_the_estimate_corrects_nothing() {
+    let mut tally = Tally::default();
+    drive(&tank(9116), 9116, &mut tally);
+    assert_eq!((tally.late, tally.never, tally.false_ones), (0, 0, 0));
+}
