@@ -76,9 +76,10 @@ pub enum PulseError {
     NotDetermined,
     /// All lengths are too long, or too short, by a share that no speed of sound explains.
     #[error(
-        "the pulses make all ranges {:+.0} % too long, and a speed of sound is wrong by at most {:.0} %; check the unit of \
-         the pulses, the assumed speed of sound, and the survey of the stations",
-        100.0 * .scale,
+        "according to the pulses, all ranges are {:.0} % too {}, but a speed of sound is wrong by at most {:.0} %; check the \
+         unit of the pulses, the assumed speed of sound, and the survey of the stations",
+        100.0 * .scale.abs(),
+        if *.scale > 0.0 { "long" } else { "short" },
         100.0 * MOST_SCALE
     )]
     Implausible {
