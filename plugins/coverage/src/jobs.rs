@@ -137,12 +137,12 @@ mod tests {
         };
         run_all(vec![0; 3], &stage(&bench), work).unwrap();
         let progress = bench.progress();
-        assert_eq!(progress.first(), Some(&(0.0, "items, 0 of 3 done".to_owned())));
+        assert_eq!(progress.first(), Some(&(0.0, "items: 0 of 3 worked out".to_owned())));
         assert!(
             progress.len() >= 4 && progress.windows(2).all(|pair| pair[0].0 <= pair[1].0),
             "{progress:?}"
         );
-        assert_eq!(progress.last(), Some(&(0.5, "items, 3 of 3 done".to_owned())));
+        assert_eq!(progress.last(), Some(&(0.5, "items: 3 of 3 worked out".to_owned())));
         assert!(progress.iter().any(|(share, _)| *share > 0.0 && *share < 0.5), "{progress:?}");
     }
 
