@@ -133,7 +133,7 @@ fn pulses_of_all_messages_of_a_tick_are_kept_by_station() {
     let pairs: Vec<_> =
         sensed.pulses.iter().map(|set| (set.sender, set.receiver, set.lengths_m.len())).collect();
     assert_eq!(pairs, [(StationId(1), StationId(2), 2), (StationId(2), StationId(1), 2)]);
-    // Pulses are no ranging cycle of the robot.
+    // Pulses do not count as a ranging cycle of the robot.
     assert!(!sensed.ranging_cycle && inbox.sense(0.3).readings.pulses.is_empty());
 }
 

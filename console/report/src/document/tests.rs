@@ -570,7 +570,7 @@ fn a_survey_is_reported_with_its_map_its_columns_and_the_difference_to_the_drawi
     let tables = csv::tables(&document, &runs);
     let figures = ["explored_percent,50", "columns_not_drawn,1", "objects_not_drawn,1", "drawn_not_found,1"];
     assert!(figures.iter().all(|figure| tables[0].contains(figure)), "{tables:?}");
-    // Column, other object and what is drawn but not there; the place that was not seen is no difference.
+    // The column, the other object and the drawn object that is not there count; a place that was not seen does not.
     assert!(page.contains(r#"<div class="big">3<small> </small></div><div class="t">differences</div>"#));
     // All files have the columns of the map under the numbers of the page, with their errors.
     assert!(tables[3].contains(",column 1,-0.950,0.000,0.420,0.420,0.020,0.010"), "{}", tables[3]);

@@ -99,7 +99,7 @@ pub(crate) fn demand(met: bool, otherwise: &str) -> Result<(), String> {
     if met { Ok(()) } else { Err(otherwise.to_owned()) }
 }
 
-/// Why there is no result.
+/// The reason why the run has not produced a result.
 pub(crate) fn no_result(model: &Model) -> &'static str {
     if model.live.is_replay() { "this run had not ended when it was loaded" } else { "no run has ended yet" }
 }
