@@ -149,7 +149,10 @@ fn a_speed_of_sound_that_pulses_make_implausible_is_refused() {
         scaled(&mut text, 0.0, &stations, scale);
         ranges(&mut text, 5.0, &stations);
         let text = Readable::new("r.csv", text).refused();
-        assert!(text.contains("r.csv: pulses before the run: the pulses make all ranges"), "{text}");
+        assert!(
+            text.contains("r.csv: pulses before the run: according to the pulses, all ranges are"),
+            "{text}"
+        );
         assert!(text.contains("check the unit of the pulses"), "{text}");
     }
 }
