@@ -25,6 +25,8 @@ pub(crate) struct Anchor {
     pub sigma_m: f64,
     /// The part of `sigma_m` that is the same at every distance.
     pub timing_sigma_m: f64,
+    /// The part of `sigma_m` that is a share of the distance, at `range_m`.
+    share_sigma_m: f64,
 }
 
 /// A station as seen from a trial position.
@@ -55,6 +57,17 @@ impl View {
 }
 
 impl Anchor {
+    pub(crate) fn new(
+        station: StationId,
+        at: Point,
+        range_m: f64,
+        sigma_m: f64,
+        timing_sigma_m: f64,
+    ) -> Self {
+        let share_sigma_m = share_sigma_m(sigma_m, timing_sigma_m, 1.0);
+        Self { station, at, range_m, sigma_m, timing_sigma_m, share_sigma_m }
+    }
+
     /// Returns the station as seen from `position`.
     ///
     /// Except for timing errors, the scatter of a range is proportional to the true distance, so its sigma is scaled to
@@ -63,7 +76,7 @@ impl Anchor {
         let away = position - self.at;
         let distance_m = away.norm().max(NEAREST_M);
         let (sigma_m, growth_m) = if self.timing_sigma_m > 0.0 {
-            let share_m = share_sigma_m(self.sigma_m, self.timing_sigma_m, distance_m / self.range_m);
+            let share_m = self.share_sigma_m * (distance_m / self.range_m);
             let variance = share_m * share_m + self.timing_sigma_m * self.timing_sigma_m;
             (variance.sqrt(), variance * distance_m / (share_m * share_m).max(1e-18))
         } else {
@@ -86,12 +99,11 @@ impl Anchor {
     /// Returns the range with the same error model at a different distance.
     pub(crate) fn at_range(&self, range_m: f64) -> Self {
         let sigma_m = if self.timing_sigma_m > 0.0 {
-            share_sigma_m(self.sigma_m, self.timing_sigma_m, range_m / self.range_m)
-                .hypot(self.timing_sigma_m)
+            (self.share_sigma_m * (range_m / self.range_m)).hypot(self.timing_sigma_m)
         } else {
             self.sigma_m / self.range_m * range_m
         };
-        Self { range_m, sigma_m, ..*self }
+        Self::new(self.station, self.at, range_m, sigma_m, self.timing_sigma_m)
     }
 }
 
@@ -116,7 +128,7 @@ fn anchor(ranging: &Ranging, stations: &[Station]) -> Result<Anchor, FixError> {
     if at.coords.iter().any(|c| c.is_nan()) {
         return Err(FixError::UnknownStation { station });
     }
-    Ok(Anchor { station, at, range_m, sigma_m, timing_sigma_m })
+    Ok(Anchor::new(station, at, range_m, sigma_m, timing_sigma_m))
 }
 
 /// Returns places on the range circle of a station that is close by; none if there is no such station.

@@ -46,10 +46,9 @@ impl PositionSolver for Bounded {
         let middles: Vec<Anchor> = anchors
             .iter()
             .zip(&annuli)
-            .map(|(anchor, annulus)| Anchor {
-                range_m: annulus.middle_m(),
-                sigma_m: annulus.width_m().max(THINNEST_M) / 12.0_f64.sqrt(),
-                ..*anchor
+            .map(|(anchor, annulus)| {
+                let sigma_m = annulus.width_m().max(THINNEST_M) / 12.0_f64.sqrt();
+                Anchor::new(anchor.station, anchor.at, annulus.middle_m(), sigma_m, anchor.timing_sigma_m)
             })
             .collect();
         let near = match solve_anchors(&middles, prior) {

@@ -282,11 +282,9 @@ impl Cycle {
         let by = 1.0 / (1.0 + common.scale);
         let shrunk: Vec<Anchor> = anchors
             .iter()
-            .map(|a| Anchor {
-                range_m: (a.range_m - common.offset_m) * by,
-                sigma_m: a.sigma_m * by,
-                timing_sigma_m: a.timing_sigma_m * by,
-                ..*a
+            .map(|a| {
+                let range_m = (a.range_m - common.offset_m) * by;
+                Anchor::new(a.station, a.at, range_m, a.sigma_m * by, a.timing_sigma_m * by)
             })
             .collect();
         if shrunk.iter().any(|a| a.range_m <= 0.0) {

@@ -4,7 +4,7 @@ use crate::{
     anchor::{Anchor, anchored},
     fix::{Fix, FixError, Integrity, PositionSolver, Prior, Ranging},
     linear::conditioning,
-    quality::{assess, integrity_of},
+    quality::{assess_excess, integrity_of},
 };
 use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 use world::{Point, Station};
@@ -44,12 +44,7 @@ impl PositionSolver for Differences {
             return Err(FixError::NotConverged { iterations: MAX_ITERATIONS });
         }
         let covariance = found.covariance.fixed_view::<2, 2>(0, 0).into_owned();
-        let mut fix = assess(&ranges, found.position, covariance, conditioning(&ranges), None)?;
-        fix.degrees_of_freedom -= 1;
-        // Leaving out a station also frees the length, so the bound for known ranges does not apply.
-        fix.protection_level_m = None;
-        fix.integrity = integrity_of(fix.chi2, fix.degrees_of_freedom);
-        Ok(fix)
+        assess_excess(&ranges, found.position, covariance, conditioning(&ranges))
     }
 }
 

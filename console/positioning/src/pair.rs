@@ -60,7 +60,7 @@ mod tests {
     use world::StationId;
 
     fn anchor(id: u32, x: f64, y: f64, range_m: f64) -> Anchor {
-        Anchor { station: StationId(id), at: Point::new(x, y), range_m, sigma_m: 0.03, timing_sigma_m: 0.0 }
+        Anchor::new(StationId(id), Point::new(x, y), range_m, 0.03, 0.0)
     }
 
     #[test]

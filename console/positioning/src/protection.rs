@@ -12,7 +12,7 @@ pub use guard::{Guard, are_on_line};
 
 use crate::{
     fix::{Exclusion, Fix},
-    quality::{LEAST_SPARED, alarm_limit, largest_sigma_m},
+    quality::{LEAST_SPARED, alarm_limit, largest_variance},
 };
 use nalgebra::{Matrix2, Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -151,14 +151,16 @@ pub fn level_m(fix: &Fix, stations: &[Station], risk: &Risk, is_emission_free: b
     }
     let multipliers = risk.multipliers(fix.used.len() + rejected, rejected > 0)?;
     let seen = Seen::new(fix, stations, is_emission_free)?;
-    let excess = largest_sigma_m(&(fix.covariance - position_part(&seen.covariance)));
-    let reach_m = |covariance: &Matrix2<f64>, sigmas: f64| sigmas * largest_sigma_m(covariance).hypot(excess);
+    let excess = largest_variance(&(fix.covariance - position_part(&seen.covariance)));
+    let reach_m =
+        |covariance: &Matrix2<f64>, sigmas: f64| sigmas * (largest_variance(covariance) + excess).sqrt();
     let degrees_of_freedom = u32::try_from(fix.used.len() - unknowns).ok()?;
+    let limit_without = alarm_limit(degrees_of_freedom - 1);
     let mut is_explained = fix.chi2 <= alarm_limit(degrees_of_freedom);
     let mut level_m = reach_m(&position_part(&seen.covariance), multipliers.fault_free);
     for index in 0..seen.rows.len() {
         let without = seen.without(index)?;
-        is_explained |= fix.chi2 - without.explained <= alarm_limit(degrees_of_freedom - 1);
+        is_explained |= fix.chi2 - without.explained <= limit_without;
         level_m = level_m.max(without.shift_m + reach_m(&without.covariance, multipliers.one_fault));
     }
     Some(level_m).filter(|level_m| is_explained && level_m.is_finite())
@@ -174,6 +176,8 @@ struct Row {
     range_m: f64,
     residual_m: f64,
     variance: f64,
+    /// 1 / variance.
+    weight: f64,
     /// Derivatives of the range by x, y and the common length.
     by: Vector3<f64>,
 }
@@ -208,9 +212,10 @@ impl Seen {
             let distance_m = away.norm();
             let by = Vector3::new(away.x / distance_m, away.y / distance_m, by_length);
             let variance = residual.sigma_m.powi(2);
-            information += by * by.transpose() / variance;
+            let weight = 1.0 / variance;
+            information += by * by.transpose() * weight;
             let (residual_m, range_m) = (residual.residual_m, residual.residual_m + distance_m);
-            rows.push(Row { station, range_m, residual_m, variance, by });
+            rows.push(Row { station, range_m, residual_m, variance, weight, by });
         }
         let covariance = information.try_inverse()?;
         covariance.iter().all(|number| number.is_finite()).then_some(Self {
@@ -245,16 +250,16 @@ impl Seen {
     /// Returns the pull of all ranges but one on a position that is a step away from the fix.
     fn gradient_without(&self, index: usize, step: &Vector3<f64>) -> Vector3<f64> {
         let at = self.position + step.xy();
-        let others = self.rows.iter().enumerate().filter(|(other, _)| *other != index);
-        others
-            .map(|(_, row)| {
-                let away = at - row.station;
-                let distance_m = away.norm().max(f64::MIN_POSITIVE);
-                let by = Vector3::new(away.x / distance_m, away.y / distance_m, row.by.z);
-                let length_m = if self.is_emission_free { step.z } else { 0.0 };
-                by * ((row.range_m - distance_m - length_m) / row.variance)
-            })
-            .sum()
+        let length_m = if self.is_emission_free { step.z } else { 0.0 };
+        let mut gradient = Vector3::zeros();
+        for row in self.rows[..index].iter().chain(&self.rows[index + 1..]) {
+            let away = at - row.station;
+            let distance_m = away.norm().max(f64::MIN_POSITIVE);
+            let pull = (row.range_m - distance_m - length_m) * row.weight;
+            let by_metre = pull / distance_m;
+            gradient += Vector3::new(away.x * by_metre, away.y * by_metre, row.by.z * pull);
+        }
+        gradient
     }
 }
 

@@ -1,7 +1,7 @@
 //! Rates the quality of a position: residuals, dilution, the chi-squared test.
 
 use crate::{
-    anchor::{Anchor, on_near_circle},
+    anchor::{Anchor, View, on_near_circle},
     fix::{Fix, FixError, Integrity, Residual},
 };
 use nalgebra::Matrix2;
@@ -27,7 +27,7 @@ pub(crate) const LEAST_SPARED: f64 = 1e-6;
 /// Stands for an infinite dilution, so that every number stays finite.
 pub(crate) const NO_GEOMETRY: f64 = 1e9;
 
-/// Assembles a fix, and rates its integrity according to its residuals.
+/// Assembles a fix from ranges of known length, with its protection level.
 pub(crate) fn assess(
     anchors: &[Anchor],
     position: Point,
@@ -35,34 +35,110 @@ pub(crate) fn assess(
     conditioning: f64,
     mirror: Option<Point>,
 ) -> Result<Fix, FixError> {
-    let views = || anchors.iter().map(|a| (a.station, a.view_from(position)));
-    let chi2: f64 = views().map(|(_, v)| v.squared_error()).sum();
-    let degrees_of_freedom = u32::try_from(anchors.len().saturating_sub(2)).unwrap_or(u32::MAX);
-    let is_finite = position.iter().chain(covariance.iter()).chain([&chi2]).all(|number| number.is_finite());
-    if !is_finite {
-        return Err(FixError::NotConverged { iterations: 0 });
+    let seen = Seen::from(anchors, position);
+    let fix = seen.rated(covariance, conditioning, mirror)?;
+    Ok(Fix { protection_level_m: seen.protection_level_m(&covariance), ..fix })
+}
+
+/// Assembles a fix from ranges that are all too long by one unknown length, found before; without a protection level.
+///
+/// Leaving out a station also frees the length, so the protection level for known ranges does not apply.
+pub(crate) fn assess_excess(
+    anchors: &[Anchor],
+    position: Point,
+    covariance: Matrix2<f64>,
+    conditioning: f64,
+) -> Result<Fix, FixError> {
+    let mut fix = Seen::from(anchors, position).rated(covariance, conditioning, None)?;
+    fix.degrees_of_freedom -= 1;
+    fix.integrity = integrity_of(fix.chi2, fix.degrees_of_freedom);
+    Ok(fix)
+}
+
+/// The stations of a fix as seen from its position.
+struct Seen<'a> {
+    anchors: &'a [Anchor],
+    position: Point,
+    views: Vec<View>,
+}
+
+impl<'a> Seen<'a> {
+    fn from(anchors: &'a [Anchor], position: Point) -> Self {
+        Self { anchors, position, views: anchors.iter().map(|a| a.view_from(position)).collect() }
     }
-    let bent = || has_rival_on_circle(anchors, position, &covariance, chi2);
-    let integrity = match integrity_of(chi2, degrees_of_freedom) {
-        Integrity::Ok if bent() => Integrity::Suspect,
-        rated => rated,
-    };
-    Ok(Fix {
-        position,
-        covariance,
-        residuals: views()
-            .map(|(station, v)| Residual { station, residual_m: v.residual_m, sigma_m: v.sigma_m })
-            .collect(),
-        used: anchors.iter().map(|a| a.station).collect(),
-        excluded: Vec::new(),
-        chi2,
-        degrees_of_freedom,
-        gdop: gdop(anchors, position),
-        conditioning,
-        mirror,
-        protection_level_m: protection_level_m(anchors, position, &covariance),
-        integrity,
-    })
+
+    /// Rates the integrity of the fix according to its residuals.
+    fn rated(
+        &self,
+        covariance: Matrix2<f64>,
+        conditioning: f64,
+        mirror: Option<Point>,
+    ) -> Result<Fix, FixError> {
+        let chi2: f64 = self.views.iter().map(View::squared_error).sum();
+        let degrees_of_freedom = u32::try_from(self.anchors.len().saturating_sub(2)).unwrap_or(u32::MAX);
+        let is_finite =
+            self.position.iter().chain(covariance.iter()).chain([&chi2]).all(|number| number.is_finite());
+        if !is_finite {
+            return Err(FixError::NotConverged { iterations: 0 });
+        }
+        let bent = || has_rival_on_circle(self.anchors, self.position, &covariance, chi2);
+        let integrity = match integrity_of(chi2, degrees_of_freedom) {
+            Integrity::Ok if bent() => Integrity::Suspect,
+            rated => rated,
+        };
+        let residual = |(a, v): (&Anchor, &View)| Residual {
+            station: a.station,
+            residual_m: v.residual_m,
+            sigma_m: v.sigma_m,
+        };
+        Ok(Fix {
+            position: self.position,
+            covariance,
+            residuals: self.anchors.iter().zip(&self.views).map(residual).collect(),
+            used: self.anchors.iter().map(|a| a.station).collect(),
+            excluded: Vec::new(),
+            chi2,
+            degrees_of_freedom,
+            gdop: self.gdop(),
+            conditioning,
+            mirror,
+            protection_level_m: None,
+            integrity,
+        })
+    }
+
+    /// Returns the radius that contains the true position even if any one range is wrong: for each station, the
+    /// distance to the position computed without that station, plus the uncertainty of that position (solution
+    /// separation); the largest sum counts. `None` if any station is indispensable. With a stated risk, [`crate::protection`] replaces this
+    /// level.
+    fn protection_level_m(&self, covariance: &Matrix2<f64>) -> Option<f64> {
+        let reach_m = |covariance: &Matrix2<f64>| PROTECTION_SIGMAS * largest_sigma_m(covariance);
+        if self.anchors.len() < 3 {
+            return None;
+        }
+        let mut level_m = reach_m(covariance);
+        for view in &self.views {
+            // Removes one range from a least squares fit (Sherman and Morrison).
+            let pull = covariance * view.direction;
+            let spared = view.sigma_m.powi(2) - view.direction.dot(&pull);
+            let without = covariance + pull * pull.transpose() / spared;
+            let shift_m = (pull * (view.residual_m / spared)).norm();
+            let needed_m = shift_m + reach_m(&without);
+            if spared <= view.sigma_m.powi(2) * LEAST_SPARED || !needed_m.is_finite() {
+                return None;
+            }
+            level_m = level_m.max(needed_m);
+        }
+        Some(level_m)
+    }
+
+    /// Returns position sigma per range sigma, as if all ranges were equally good.
+    fn gdop(&self) -> f64 {
+        let information: Matrix2<f64> =
+            self.views.iter().map(|v| v.direction * v.direction.transpose()).sum();
+        inverse_of(&information)
+            .map_or(NO_GEOMETRY, |inverse| inverse.trace().max(0.0).sqrt().min(NO_GEOMETRY))
+    }
 }
 
 /// Whether a place on the range circle of a station close by fits nearly as well and lies beyond the error ellipse.
@@ -74,34 +150,15 @@ fn has_rival_on_circle(anchors: &[Anchor], position: Point, covariance: &Matrix2
         .any(|at| (at - position).norm() > reach_m && cost(at) < chi2 + PROTECTION_SIGMAS.powi(2))
 }
 
-/// Returns the radius that contains the true position even if any one range is wrong: for each station, the distance to
-/// the position computed without that station, plus the uncertainty of that position (solution separation); the largest
-/// sum counts. `None` if any station is indispensable. With a stated risk, [`crate::protection`] replaces this level.
-fn protection_level_m(anchors: &[Anchor], position: Point, covariance: &Matrix2<f64>) -> Option<f64> {
-    let reach_m = |covariance: &Matrix2<f64>| PROTECTION_SIGMAS * largest_sigma_m(covariance);
-    if anchors.len() < 3 {
-        return None;
-    }
-    let mut level_m = reach_m(covariance);
-    for view in anchors.iter().map(|a| a.view_from(position)) {
-        // Removes one range from a least squares fit (Sherman and Morrison).
-        let pull = covariance * view.direction;
-        let spared = view.sigma_m.powi(2) - view.direction.dot(&pull);
-        let without = covariance + pull * pull.transpose() / spared;
-        let shift_m = (pull * (view.residual_m / spared)).norm();
-        let needed_m = shift_m + reach_m(&without);
-        if spared <= view.sigma_m.powi(2) * LEAST_SPARED || !needed_m.is_finite() {
-            return None;
-        }
-        level_m = level_m.max(needed_m);
-    }
-    Some(level_m)
-}
-
 /// Returns the standard deviation along the longest axis of a covariance, metres.
 pub(crate) fn largest_sigma_m(covariance: &Matrix2<f64>) -> f64 {
+    largest_variance(covariance).sqrt()
+}
+
+/// Returns the variance along the longest axis of a covariance, square metres.
+pub(crate) fn largest_variance(covariance: &Matrix2<f64>) -> f64 {
     let (a, b, c) = (covariance[(0, 0)], covariance[(0, 1)], covariance[(1, 1)]);
-    (f64::midpoint(a, c) + ((a - c) / 2.0).hypot(b)).max(0.0).sqrt()
+    (f64::midpoint(a, c) + ((a - c) / 2.0).hypot(b)).max(0.0)
 }
 
 /// Returns the integrity for a sum of squared normalised residuals.
@@ -139,16 +196,6 @@ pub(crate) fn chi_squared_quantile(z: f64, degrees_of_freedom: u32) -> f64 {
     let k = f64::from(degrees_of_freedom);
     let spread = 2.0 / (9.0 * k);
     k * (1.0 - spread + z * spread.sqrt()).powi(3)
-}
-
-/// Returns position sigma per range sigma, as if all ranges were equally good.
-fn gdop(anchors: &[Anchor], position: Point) -> f64 {
-    let information: Matrix2<f64> = anchors
-        .iter()
-        .map(|a| a.view_from(position).direction)
-        .map(|direction| direction * direction.transpose())
-        .sum();
-    inverse_of(&information).map_or(NO_GEOMETRY, |inverse| inverse.trace().max(0.0).sqrt().min(NO_GEOMETRY))
 }
 
 /// Returns the inverse of a symmetric matrix without negative eigenvalues; `None` if it is nearly singular.
