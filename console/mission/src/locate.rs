@@ -181,14 +181,24 @@ impl Locator {
         self.pulses.correct(&mut heard);
         let mut events = Vec::new();
         if let Some(session) = &mut self.session {
-            let estimate = self.positioner.estimate();
-            events = session.take(&heard, &estimate);
-            let doubt = session.doubt();
-            heard = session.corrected(&heard);
-            self.doubt(doubt);
+            events = session.take(&heard, &self.positioner.estimate());
         }
-        let mut result = self.positioner.cycle(&heard);
-        self.protection.iter_mut().for_each(|protection| protection.guard.cycle(&heard, &result.fix));
+        let calibration = self.session.as_ref().map(Session::calibration);
+        let mut result = match calibration {
+            None => self.positioner.cycle(&heard),
+            Some(calibration) => {
+                self.positioner.doubt(calibration.doubt());
+                self.positioner.cycle(&calibration.corrected(&heard))
+            }
+        };
+        if let Some(protection) = &mut self.protection {
+            protection.guard.cycle(&heard, &result.fix, calibration);
+            // A wrong station may have spoilt the calibration, which one fix does not show: then only the pose has a
+            // level.
+            if let (Some(_), Ok(fix)) = (calibration, &mut result.fix) {
+                fix.protection_level_m = None;
+            }
+        }
         (self.impossible, self.sides) = (std::mem::take(&mut result.impossible), result.sides);
         if let Ok(fix) = &mut result.fix {
             let by_order = fix.excluded.iter_mut().filter(|(station, _)| self.unused.contains(station));

@@ -101,6 +101,11 @@ fn squared(anchors: &[Anchor]) -> Option<Point> {
     Some(Point::new(solved.x, solved.y)).filter(|at| at.iter().all(|c| c.is_finite()))
 }
 
+/// Returns the minimum below `start`, with its sum of squared residuals in units of their variances.
+pub(crate) fn minimum(anchors: &[Anchor], start: Point) -> Option<(Point, f64)> {
+    descend(anchors, start).map(|found| (found.position, found.cost))
+}
+
 /// Descends from a place in Gauss-Newton steps with Levenberg-Marquardt damping.
 fn descend(anchors: &[Anchor], start: Point) -> Option<Minimum> {
     let mut state = Vector3::new(start.x, start.y, 0.0);

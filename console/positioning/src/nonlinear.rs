@@ -122,7 +122,7 @@ fn surprise_to((near, covariance): Prior, position: Point) -> f64 {
 }
 
 /// Returns the position reflected in the line that fits the stations best.
-fn reflected(anchors: &[Anchor], position: Point) -> Point {
+pub(crate) fn reflected(anchors: &[Anchor], position: Point) -> Point {
     let (middle, along) = line_of(anchors);
     let across = Vector::new(-along.y, along.x);
     position - across * (2.0 * across.dot(&(position - middle)))
@@ -153,6 +153,11 @@ fn beside_the_line(anchors: &[Anchor], near: Point) -> Point {
     let longest = stations().map(|(_, r)| r).fold(0.0, f64::max);
     let y = (squared - x * x).max(0.0).sqrt().max(OFF_THE_SADDLE * longest);
     middle + along * x + across * y.copysign(across.dot(&(near - middle)))
+}
+
+/// Returns the minimum below `start`, with its sum of squared residuals in units of their variances.
+pub(crate) fn minimum(anchors: &[Anchor], start: Point) -> Option<(Point, f64)> {
+    descend(anchors, start).ok().map(|found| (found.position, found.cost))
 }
 
 /// Descends from `start` until the steps are negligible.

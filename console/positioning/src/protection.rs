@@ -4,19 +4,23 @@
 //! Method: solution separation (Brenner 1996; Blanch et al. 2015 for the shares of the risk). The hypotheses are that
 //! every station is right, and, for each station, that this station alone is wrong by any amount. The position without a
 //! station does not depend on the error of that station. The distance to this position, plus a multiple of its own
-//! uncertainty, therefore bounds the error under that hypothesis, whether or not the error is noticed.
+//! uncertainty, therefore bounds the error under that hypothesis, whether or not the error is noticed. If the other stations
+//! are nearly on a line, the mirror image of that position counts, too, unless their ranges exclude it.
 
 mod guard;
+mod mirror;
 
 pub use guard::{Guard, are_on_line};
+pub(crate) use mirror::{Layout, other_side_m};
 
 use crate::{
-    fix::{Exclusion, Fix},
+    anchor::Anchor,
+    fix::Fix,
     quality::{LEAST_SPARED, alarm_limit, largest_variance},
 };
 use nalgebra::{Matrix2, Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
-use world::{Point, Station};
+use world::{Point, Station, StationId};
 
 /// Mean time for which a station stays wrong before it is found and repaired, hours. The probability that a station is
 /// wrong at a given moment is the rate of faults times this time (an assumption).
@@ -144,7 +148,7 @@ impl Risk {
 /// assert_eq!(level(&ranges).0, None);
 /// ```
 pub fn level_m(fix: &Fix, stations: &[Station], risk: &Risk, is_emission_free: bool) -> Option<f64> {
-    let rejected = fix.excluded.iter().filter(|(_, why)| matches!(why, Exclusion::Residual { .. })).count();
+    let rejected = guard::rejected(fix);
     let unknowns = 2 + usize::from(is_emission_free);
     if fix.used.len() < unknowns + SPARE || rejected > 1 {
         return None;
@@ -161,7 +165,8 @@ pub fn level_m(fix: &Fix, stations: &[Station], risk: &Risk, is_emission_free: b
     for index in 0..seen.rows.len() {
         let without = seen.without(index)?;
         is_explained |= fix.chi2 - without.explained <= limit_without;
-        level_m = level_m.max(without.shift_m + reach_m(&without.covariance, multipliers.one_fault));
+        let apart_m = without.shift_m.max(seen.other_side_m(index, &without, multipliers.one_fault)?);
+        level_m = level_m.max(apart_m + reach_m(&without.covariance, multipliers.one_fault));
     }
     Some(level_m).filter(|level_m| is_explained && level_m.is_finite())
 }
@@ -172,6 +177,7 @@ fn position_part(covariance: &Matrix3<f64>) -> Matrix2<f64> {
 
 /// A range of a fix.
 struct Row {
+    id: StationId,
     station: Point,
     range_m: f64,
     residual_m: f64,
@@ -182,9 +188,18 @@ struct Row {
     by: Vector3<f64>,
 }
 
+impl Row {
+    /// Returns the range with the error that it has at the fix.
+    fn anchor(&self) -> Anchor {
+        let sigma_m = self.variance.sqrt();
+        Anchor::new(self.id, self.station, self.range_m, sigma_m, sigma_m)
+    }
+}
+
 /// The ranges of a fix, and the covariance that they give.
 struct Seen {
     rows: Vec<Row>,
+    layout: Layout,
     covariance: Matrix3<f64>,
     position: Point,
     is_emission_free: bool,
@@ -194,6 +209,7 @@ struct Seen {
 struct Without {
     /// Distance from the fix, metres.
     shift_m: f64,
+    position: Point,
     covariance: Matrix2<f64>,
     /// The part of the chi-squared sum that leaves with the station.
     explained: f64,
@@ -215,10 +231,11 @@ impl Seen {
             let weight = 1.0 / variance;
             information += by * by.transpose() * weight;
             let (residual_m, range_m) = (residual.residual_m, residual.residual_m + distance_m);
-            rows.push(Row { station, range_m, residual_m, variance, weight, by });
+            rows.push(Row { id: residual.station, station, range_m, residual_m, variance, weight, by });
         }
         let covariance = information.try_inverse()?;
         covariance.iter().all(|number| number.is_finite()).then_some(Self {
+            layout: Layout::of(rows.iter().map(|row| (row.station, row.weight))),
             rows,
             covariance,
             position: fix.position,
@@ -242,9 +259,23 @@ impl Seen {
         let step = first + covariance * self.gradient_without(index, &first);
         Some(Without {
             shift_m: step.xy().norm().max(first.xy().norm()),
+            position: self.position + step.xy(),
             covariance: position_part(&covariance),
             explained: row.residual_m.powi(2) / spared,
         })
+    }
+
+    /// Returns the distance from the fix to the mirror image of the position without a station, metres; 0 if the other
+    /// ranges exclude it.
+    fn other_side_m(&self, index: usize, without: &Without, sigmas: f64) -> Option<f64> {
+        let row = &self.rows[index];
+        if !self.layout.is_flat_without(row.station, row.weight) {
+            return Some(0.0);
+        }
+        let others = self.rows[..index].iter().chain(&self.rows[index + 1..]);
+        let anchors: Vec<Anchor> = others.map(Row::anchor).collect();
+        let away_m = other_side_m(&anchors, without.position, self.is_emission_free, sigmas * sigmas)?;
+        Some(if away_m > 0.0 { away_m + without.shift_m } else { 0.0 })
     }
 
     /// Returns the pull of all ranges but one on a position that is a step away from the fix.

@@ -18,6 +18,8 @@ use crate::{
     ekf::MotionNoise,
     fix::Ranging,
     noise::{RangeNoise, Timing},
+    positioner::Doubt,
+    session::CommonError,
 };
 use serde::{Deserialize, Serialize};
 use window::{Fitted, Node, Test, Window};
@@ -33,7 +35,7 @@ const SUSPECTED: f64 = 2.5;
 const CLEARED: f64 = 2.0;
 /// Correlation below which errors can be told apart again.
 const SEPARABLE: f64 = 0.9;
-/// The number of fixes before a bias can be detected.
+/// The number of fixes before a bias can be detected, and of those without a bias before it is over.
 const LEAST_FIXES: usize = 10;
 /// Number of standard deviations of a station's residuals above which a known bias is estimated again: it has changed.
 const CHANGED: f64 = 5.0;
@@ -137,6 +139,10 @@ pub struct SessionCalibration {
     known: Vec<Known>,
     window: Window,
     scale: Estimated,
+    /// For each station: the scale according to the others.
+    scale_without: Vec<Estimated>,
+    /// The station for which the next cycle estimates it.
+    turn: usize,
     slip_correlation: f64,
     aggregation: Aggregation,
     noise: RangeNoise,
@@ -162,6 +168,8 @@ impl SessionCalibration {
             known: vec![Known::default(); stations.len()],
             window: Window::new(config.fixes, config.sound_speed == SoundSpeed::Linear, motion.sigma_per_m),
             scale: Estimated { value: 0.0, sigma: window::SCALE_SIGMA },
+            scale_without: vec![Estimated { value: 0.0, sigma: window::SCALE_SIGMA }; stations.len()],
+            turn: 0,
             slip_correlation: 0.0,
             aggregation,
             noise,
@@ -208,9 +216,44 @@ impl SessionCalibration {
         self.stations.iter().zip(&self.known).filter_map(|(station, known)| Some((station.id, known.bias_m?)))
     }
 
+    /// The share by which all ranges are too long according to all stations but one, which therefore cannot spoil it.
+    /// Every cycle renews it for one station.
+    pub fn scale_without(&self, station: StationId) -> Estimated {
+        let index = self.stations.iter().position(|known| known.id == station);
+        index.map_or(self.scale, |index| self.scale_without[index])
+    }
+
+    /// The errors that the corrected ranges probably still have.
+    pub fn doubt(&self) -> Doubt {
+        self.doubt_of(self.scale)
+    }
+
+    /// The errors that the ranges of the other stations, corrected without this one, probably still have.
+    pub fn doubt_without(&self, station: StationId) -> Doubt {
+        self.doubt_of(self.scale_without(station))
+    }
+
+    fn doubt_of(&self, scale: Estimated) -> Doubt {
+        let biases_m = self.biases_m().filter(|_| self.config.on_bias == OnBias::Correct);
+        let likely_m = biases_m.map(|(_, bias_m)| bias_m.sigma).fold(0.0, f64::hypot);
+        let likely_errors = [CommonError::Share(scale.sigma), CommonError::default()];
+        Doubt { likely_errors, likely_m, ..Doubt::default() }
+    }
+
     /// Returns ranges without their known errors; those of a biased station are left out or corrected.
     pub fn corrected(&self, sets: &[RangeSet]) -> Vec<RangeSet> {
-        let by = 1.0 / (1.0 + self.scale.value);
+        self.corrected_by(sets, self.scale)
+    }
+
+    /// Returns the ranges of all stations but one without their errors as far as the other stations show them.
+    pub fn corrected_without(&self, station: StationId, sets: &[RangeSet]) -> Vec<RangeSet> {
+        let mut others = self.corrected_by(sets, self.scale_without(station));
+        others.retain(|set| set.station != station);
+        others
+    }
+
+    fn corrected_by(&self, sets: &[RangeSet], scale: Estimated) -> Vec<RangeSet> {
+        let by = 1.0 / (1.0 + scale.value);
         let one = |set: &RangeSet| {
             let index = self.stations.iter().position(|station| station.id == set.station);
             let bias_m = index.and_then(|index| self.known[index].bias_m);
@@ -233,18 +276,28 @@ impl SessionCalibration {
         let Some(node) = self.node(sets, near, t_s) else { return Vec::new() };
         self.moved = (Vector::zeros(), 0.0);
         self.window.push(node);
-        let active: Vec<(usize, f64)> = (0..self.stations.len())
-            .filter(|station| self.known[*station].bias_m.is_some())
-            .map(|station| (station, self.known[station].from_s))
-            .collect();
-        let Some(fitted) = self.window.fit(self.stations.len(), &active) else { return Vec::new() };
+        let Some(fitted) = self.fit() else { return Vec::new() };
         if fitted.scale.value.abs() < MOST_SCALE {
             (self.scale, self.slip_correlation) = (fitted.scale, fitted.slip_correlation);
         }
+        if let Some(scale) = fitted.scale_without.filter(|scale| scale.value.abs() < MOST_SCALE) {
+            self.scale_without[self.turn] = scale;
+        }
+        self.turn = (self.turn + 1) % self.stations.len();
         let mut news: Vec<News> = self.separable(&fitted).into_iter().collect();
         news.extend(self.judge(&fitted));
-        news.extend(self.detected(&fitted, &active));
         news
+    }
+
+    /// The stations with a detected bias, with the time from which it counts, seconds.
+    fn active(&self) -> Vec<(usize, f64)> {
+        let biased = self.known.iter().enumerate().filter(|(_, known)| known.bias_m.is_some());
+        biased.map(|(station, known)| (station, known.from_s)).collect()
+    }
+
+    fn fit(&mut self) -> Option<Fitted> {
+        let active = self.active();
+        self.window.fit(self.stations.len(), &active, self.turn)
     }
 
     fn node(&self, sets: &[RangeSet], (near, heading_sigma_rad): (Point, f64), t_s: f64) -> Option<Node> {
@@ -297,9 +350,13 @@ impl SessionCalibration {
         }
     }
 
-    /// Updates what is known about each station.
+    /// Updates what is known about each station. The most significant contradiction counts first, because it also shows in
+    /// the residuals of the other stations: the change of a known bias, or a new one.
     fn judge(&mut self, fitted: &Fitted) -> Vec<News> {
-        let mut news = Vec::new();
+        if let Some((station, changed_s)) = self.changed(fitted) {
+            return self.begin_again(station, changed_s).into_iter().collect();
+        }
+        let mut news: Vec<News> = Vec::new();
         for (station, bias_m) in &fitted.biases_m {
             news.extend(self.follow(*station, *bias_m));
         }
@@ -316,16 +373,44 @@ impl SessionCalibration {
                 _ => None,
             };
         }
+        news.extend(self.detected(fitted));
         news
     }
 
-    /// Detects a bias that begins in the window. At most one is detected in a cycle: the most significant one, because it
-    /// also shows in the residuals of the other stations.
+    /// The station that shows most significantly that its known bias has changed, and the time of the change, seconds;
+    /// `None` if a new bias is more significant.
+    fn changed(&self, fitted: &Fitted) -> Option<(usize, f64)> {
+        let change = |station: usize| {
+            let (changed_s, score) = self.window.change(station);
+            let is_later = changed_s > self.known[station].from_s;
+            (score > CHANGED && is_later).then_some((station, changed_s, score))
+        };
+        let stations = fitted.biases_m.iter().map(|(station, _)| *station);
+        let (station, changed_s, score) = stations.filter_map(change).max_by(|a, b| a.2.total_cmp(&b.2))?;
+        let new = fitted.tests.iter().filter_map(|test| separable_bias_m(*test)).map(Estimated::score);
+        (score >= new.fold(0.0, f64::max)).then_some((station, changed_s))
+    }
+
+    /// Sets the ranges with the old bias of a station aside, and estimates its bias from now on.
+    fn begin_again(&mut self, index: usize, changed_s: f64) -> Option<News> {
+        let first_s = self.window.first_s();
+        self.window.set_aside(index, self.known[index].from_s, changed_s);
+        self.known[index].from_s = changed_s;
+        let refitted = self.fit()?;
+        let bias_m = refitted.biases_m.iter().find(|(station, _)| *station == index)?.1;
+        self.known[index].bias_m = Some(bias_m);
+        let station = self.stations[index].id;
+        (bias_m.score() >= CLEARED).then_some(News::Biased { station, bias_m, since_s: first_s })
+    }
+
+    /// Detects a bias that begins in the window. At most one is detected in a cycle, the most significant one, and never in
+    /// half of the stations: then nothing shows which half is right.
     ///
     /// The test counts the bias in the whole window, most of which may be from before it began. Once it is detected, the
     /// window is fitted again with a bias from its onset on, which gives its size.
-    fn detected(&mut self, fitted: &Fitted, active: &[(usize, f64)]) -> Option<News> {
-        if self.window.len() < LEAST_FIXES {
+    fn detected(&mut self, fitted: &Fitted) -> Option<News> {
+        let active = self.active();
+        if self.window.len() < LEAST_FIXES || 2 * (active.len() + 1) >= self.stations.len() {
             return None;
         }
         let tested = |(station, test): (usize, &Option<Test>)| Some((station, separable_bias_m(*test)?));
@@ -336,32 +421,23 @@ impl SessionCalibration {
         }
         let since_s = self.known[station].since_s.unwrap_or(self.window.first_s());
         let (from_s, _) = self.window.change(station);
-        let with: Vec<(usize, f64)> = active.iter().copied().chain([(station, from_s)]).collect();
-        let refitted = self.window.fit(self.stations.len(), &with)?;
+        let with: Vec<(usize, f64)> = active.into_iter().chain([(station, from_s)]).collect();
+        let refitted = self.window.fit(self.stations.len(), &with, self.turn)?;
         let bias_m = refitted.biases_m.iter().find(|(index, _)| *index == station)?.1;
         self.known[station] = Known { since_s: Some(since_s), bias_m: Some(bias_m), from_s };
         Some(News::Biased { station: self.stations[station].id, bias_m, since_s })
     }
 
-    /// Follows a detected bias, which may end or change.
+    /// Follows a detected bias until it is over.
     fn follow(&mut self, index: usize, bias_m: Estimated) -> Option<News> {
-        let station = self.stations[index].id;
-        if self.window.heard(index) < LEAST_FIXES.min(self.config.fixes) {
-            return None;
-        }
-        let (changed_s, change) = self.window.change(index);
-        let first_s = self.window.first_s();
         let known = &mut self.known[index];
-        if change > CHANGED && changed_s > known.from_s {
-            (known.from_s, known.bias_m) = (changed_s, Some(bias_m));
-            return Some(News::Biased { station, bias_m, since_s: first_s });
-        }
-        if bias_m.score() < CLEARED {
-            *known = Known::default();
-            return Some(News::Sound { station });
-        }
         known.bias_m = Some(bias_m);
-        None
+        let is_over = bias_m.score() < CLEARED
+            && self.window.heard(index, known.from_s) >= LEAST_FIXES.min(self.config.fixes);
+        is_over.then(|| {
+            *known = Known::default();
+            News::Sound { station: self.stations[index].id }
+        })
     }
 }
 

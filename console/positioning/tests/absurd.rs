@@ -86,7 +86,7 @@ impl Taken {
         self.positioner.predict(&rest);
         self.guard.predict(&rest);
         let result = self.positioner.cycle(&corrected);
-        self.guard.cycle(&corrected, &result.fix);
+        self.guard.cycle(sets, &result.fix, Some(&self.session));
     }
 
     fn sound(&self, at: Point) -> Vec<RangeSet> {

@@ -2,8 +2,7 @@
 
 use crate::event::EventKind;
 use positioning::{
-    CommonError, Doubt, Estimate, Exclusion, Fix, News, OnBias, PositionerConfig, SessionCalibration,
-    SessionConfig, SolverKind,
+    Estimate, Exclusion, Fix, News, OnBias, PositionerConfig, SessionCalibration, SessionConfig, SolverKind,
 };
 use world::{Odometry, RangeSet};
 
@@ -59,17 +58,9 @@ impl Session {
         [calibrated].into_iter().chain(news.into_iter().map(event)).collect()
     }
 
-    /// Returns the ranges without their known errors.
-    pub(super) fn corrected(&self, sets: &[RangeSet]) -> Vec<RangeSet> {
-        self.calibration.corrected(sets)
-    }
-
-    /// The errors that the corrected ranges probably still have.
-    pub(super) fn doubt(&self) -> Doubt {
-        let scale = CommonError::Share(self.calibration.scale().sigma);
-        let biases_m = self.calibration.biases_m().filter(|_| self.on_bias == OnBias::Correct);
-        let likely_m = biases_m.map(|(_, bias_m)| bias_m.sigma).fold(0.0, f64::hypot);
-        Doubt { likely_errors: [scale, CommonError::default()], likely_m, ..Doubt::default() }
+    /// The estimates of the calibration.
+    pub(super) fn calibration(&self) -> &SessionCalibration {
+        &self.calibration
     }
 
     /// Names the bias as the reason for which a fix does not use a station.

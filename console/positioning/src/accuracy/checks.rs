@@ -6,7 +6,8 @@
 
 use super::{Forecast, Grid, NEAREST_M, adviser::along_wall, is_in_sight, needed};
 use crate::{
-    protection::Risk,
+    anchor::Anchor,
+    protection::{Layout, Risk, other_side_m},
     quality::{LEAST_SPARED, inverse_of, largest_sigma_m},
 };
 use nalgebra::{Matrix2, Vector2};
@@ -69,7 +70,10 @@ pub struct OneMore {
 
 /// The ranges expected at a place.
 struct Heard {
+    place: Point,
     rows: Vec<Row>,
+    /// The ranges without errors, in the order of the rows.
+    anchors: Vec<Anchor>,
     covariance: Matrix2<f64>,
     /// Variance of the length that all ranges share, at the best position: 0 if the time of emission is known, square
     /// metres.
@@ -100,12 +104,17 @@ impl Heard {
                 Row { station: station.id, direction: away / distance_m, distance_m, weight }
             })
             .collect();
+        let anchor = |row: &Row| {
+            let (at, sigma_m) = (place - row.direction * row.distance_m, row.weight.sqrt().recip());
+            Anchor::new(row.station, at, row.distance_m, sigma_m, sigma_m)
+        };
+        let anchors = rows.iter().map(anchor).collect();
         let shared = if forecast.is_emission_unknown { centred(&mut rows) } else { 0.0 };
         let information: Matrix2<f64> =
             rows.iter().map(|row| row.direction * row.direction.transpose() * row.weight).sum();
         let needed = needed(forecast.is_emission_unknown);
         let covariance = inverse_of(&information).filter(|_| rows.len() >= needed)?;
-        Some(Self { rows, covariance, shared, protected_from: needed + 1 })
+        Some(Self { place, rows, anchors, covariance, shared, protected_from: needed + 1 })
     }
 
     /// Information about the size of a wrong station's error, about the scale of all ranges, and about both together.
@@ -131,17 +140,31 @@ impl Heard {
         let multipliers =
             risk.multipliers(self.rows.len(), false).filter(|_| self.rows.len() >= self.protected_from)?;
         let mut level_m = multipliers.fault_free * largest_sigma_m(&self.covariance);
-        for row in &self.rows {
+        let layout =
+            Layout::of(self.anchors.iter().zip(&self.rows).map(|(anchor, row)| (anchor.at, row.weight)));
+        for (index, row) in self.rows.iter().enumerate() {
             let pull = self.covariance * row.direction;
             let spared = 1.0 / row.weight - row.direction.dot(&pull) - self.shared;
             if spared <= LEAST_SPARED / row.weight {
                 return None;
             }
             let without = self.covariance + pull * pull.transpose() / spared;
-            let apart_m = pull.norm() / spared.sqrt();
+            let other_side_m = if layout.is_flat_without(self.anchors[index].at, row.weight) {
+                self.other_side_m(index, multipliers.one_fault)?
+            } else {
+                0.0
+            };
+            let apart_m = (pull.norm() / spared.sqrt()).max(other_side_m);
             level_m = level_m.max(apart_m + multipliers.one_fault * largest_sigma_m(&without));
         }
         Some(level_m).filter(|level_m| level_m.is_finite())
+    }
+
+    /// Returns the distance to the mirror image that the ranges without one station allow, metres; 0 if they exclude it.
+    fn other_side_m(&self, index: usize, sigmas: f64) -> Option<f64> {
+        let mut others = self.anchors.clone();
+        others.remove(index);
+        other_side_m(&others, self.place, self.shared > 0.0, sigmas * sigmas)
     }
 }
 

@@ -2,10 +2,11 @@
 
 use super::{Risk, Unprotected};
 use crate::{
-    fix::{Fix, FixError, Integrity},
+    fix::{Exclusion, Fix, FixError, Integrity},
     positioner::{Doubt, Positioner, PositionerConfig},
     pulses::PulseTest,
     quality::largest_sigma_m,
+    session_calibration::SessionCalibration,
     solver_kind::SolverKind,
 };
 use nalgebra::Matrix2;
@@ -52,12 +53,19 @@ struct Other {
 }
 
 impl Other {
-    /// Takes a cycle; returns whether it contains the station and fits the hypothesis that this station is wrong.
-    fn explains(&mut self, sets: &[RangeSet]) -> bool {
-        let heard: Vec<RangeSet> = sets.iter().filter(|set| set.station != self.station).cloned().collect();
+    /// Takes a cycle; returns whether it contains the station and fits the hypothesis that this station alone is wrong.
+    fn explains(&mut self, sets: &[RangeSet], session: Option<&SessionCalibration>) -> bool {
+        let heard = match session {
+            None => sets.iter().filter(|set| set.station != self.station).cloned().collect(),
+            Some(session) => {
+                self.positioner.doubt(session.doubt_without(self.station));
+                session.corrected_without(self.station, sets)
+            }
+        };
         let fix = self.positioner.cycle(&heard).fix;
         self.contradicted = if contradicts(&fix) { self.contradicted.saturating_add(1) } else { 0 };
-        heard.len() < sets.len() && fix.is_ok() && self.contradicted == 0
+        let is_heard = sets.iter().any(|set| set.station == self.station);
+        is_heard && self.contradicted == 0 && fix.is_ok_and(|fix| rejected(&fix) == 0)
     }
 }
 
@@ -100,10 +108,19 @@ impl Guard {
     }
 
     /// Processes a ranging cycle. `whole` is the fix from all stations.
-    pub fn cycle(&mut self, sets: &[RangeSet], whole: &Result<Fix, FixError>) {
-        let mut is_explained = !contradicts(whole);
+    ///
+    /// With a session calibration, `sets` are the uncorrected ranges: each hypothesis corrects them by what the stations
+    /// other than the wrong one show, because the wrong one may have spoilt the estimates from all stations.
+    pub fn cycle(
+        &mut self,
+        sets: &[RangeSet],
+        whole: &Result<Fix, FixError>,
+        session: Option<&SessionCalibration>,
+    ) {
+        let is_alone = whole.as_ref().map_or(true, |fix| rejected(fix) <= 1);
+        let mut is_explained = is_alone && !contradicts(whole);
         for other in &mut self.others {
-            is_explained |= other.explains(sets);
+            is_explained |= other.explains(sets, session);
         }
         self.is_explained = is_explained;
         self.silent = if whole.is_ok() { 0 } else { self.silent.saturating_add(1) };
@@ -150,6 +167,11 @@ pub fn are_on_line(stations: &[Station]) -> bool {
     let spreads = spread.symmetric_eigenvalues();
     // The comparison also holds for stations in one place.
     spreads.min() <= spreads.max() * LEAST_WIDTH.powi(2)
+}
+
+/// The number of stations that a fix does not use because of their residuals.
+pub(super) fn rejected(fix: &Fix) -> usize {
+    fix.excluded.iter().filter(|(_, why)| matches!(why, Exclusion::Residual { .. })).count()
 }
 
 fn contradicts(fix: &Result<Fix, FixError>) -> bool {

@@ -51,6 +51,70 @@ fn a_wrong_station_moves_no_more_fixes_beyond_the_level_than_stated() {
     }
 }
 
+/// The number of fixes beyond their level, and the number of stated levels, in layouts of stations at random places, of
+/// which all, all but one, or all but two lie near a line. One station is wrong in two of three fixes.
+fn beyond_in_any_layout(is_emission_free: bool, layouts: u32, seed: u64) -> (usize, usize) {
+    let (mut draws, risk) = (Draws::new(0.0, 1, seed), Risk::default());
+    let (mut beyond, mut stated) = (0, 0);
+    for layout in 0..layouts {
+        let n = 4 + u32::from(is_emission_free) + layout % 4;
+        let mut stations = ring(n, 20.0);
+        let beside = (layout / 4 % 4) as usize;
+        for (index, station) in stations.iter_mut().enumerate() {
+            station.position = draws.on_disc() * 20.0;
+            if beside < 3 && index >= beside {
+                station.position.y *= 0.05;
+            }
+        }
+        for run in 0..200_usize {
+            let at = draws.on_disc() * 18.0;
+            let mut ranges = ranges(&stations, at, &mut draws);
+            if run % 3 > 0 {
+                ranges[run % n as usize].range_m += draws.even() * 40.0 * SIGMA_M;
+            }
+            let fix = if is_emission_free {
+                Screened(Differences).solve(&ranges, &stations, None)
+            } else {
+                Screened(Nls).solve(&ranges, &stations, None)
+            };
+            let Some(fix) = fix.ok().filter(|fix| fix.mirror.is_none()) else { continue };
+            let Some(level_m) = level_m(&fix, &stations, &risk, is_emission_free) else { continue };
+            stated += 1;
+            if (fix.position - at).norm() > level_m {
+                beyond += 1;
+            }
+        }
+    }
+    (beyond, stated)
+}
+
+#[test]
+fn a_wrong_station_beside_a_line_of_others_moves_no_more_fixes_beyond_the_level_than_stated() {
+    for is_emission_free in [false, true] {
+        let (beyond, stated) = beyond_in_any_layout(is_emission_free, 160, 90_017);
+        assert!(
+            beyond as f64 <= MOST_WHILE_WRONG * stated as f64,
+            "{is_emission_free}: {beyond} of {stated}"
+        );
+        assert!(stated > 10_000, "{is_emission_free}: {stated} levels are stated");
+    }
+}
+
+/// Four stations on a line and a wrong one beside it: the solver chooses the wrong side.
+#[test]
+fn a_level_reaches_to_the_mirror_image_that_only_a_wrong_station_excludes() {
+    let places = [(-15.0, -2.0), (-5.0, -2.0), (5.0, -2.0), (15.0, -2.0), (2.0, 17.0)];
+    let mut stations = ring(5, 1.0);
+    stations.iter_mut().zip(places).for_each(|(station, (x, y))| station.position = Point::new(x, y));
+    let at = Point::new(9.678, 2.024);
+    let mut ranges = ranges(&stations, at, &mut Draws::new(0.0, 1, 7));
+    ranges[4].range_m += 4.5;
+    let fix = Nls.solve(&ranges, &stations, None).unwrap();
+    assert!((fix.position - at).norm() > 2.0, "{}", fix.position);
+    let level_m = level_m(&fix, &stations, &Risk::default(), false).unwrap_or(f64::INFINITY);
+    assert!(level_m > (fix.position - at).norm(), "{level_m}");
+}
+
 #[test]
 fn too_few_stations_or_two_wrong_ones_protect_nothing() {
     let (stations, mut draws, at) = (ring(6, 10.0), Draws::new(0.0, 1, 1), Point::new(1.0, 2.0));
@@ -106,7 +170,7 @@ impl Run {
 
     fn hear(&mut self, sets: &[RangeSet]) {
         let result = self.whole.cycle(sets);
-        self.guard.cycle(sets, &result.fix);
+        self.guard.cycle(sets, &result.fix, None);
     }
 
     /// The ranges at the true place, with these biases of the first stations, metres.

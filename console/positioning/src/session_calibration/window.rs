@@ -170,6 +170,8 @@ pub(super) struct Fitted {
     pub biases_m: Vec<(usize, Estimated)>,
     /// For each station that is not active.
     pub tests: Vec<Option<Test>>,
+    /// The scale according to the other stations, for the station that was asked for.
+    pub scale_without: Option<Estimated>,
 }
 
 /// The last fixes.
@@ -225,8 +227,21 @@ impl Window {
         }
     }
 
-    /// Fits positions, scale and the biases of the active stations, each from its time on, seconds.
-    pub(super) fn fit(&mut self, n_stations: usize, active: &[(usize, f64)]) -> Option<Fitted> {
+    /// Forgets the ranges of a station from a time on, before another time, seconds.
+    pub(super) fn set_aside(&mut self, station: usize, from_s: f64, until_s: f64) {
+        for node in self.nodes.iter_mut().filter(|node| (from_s..until_s).contains(&node.t_s)) {
+            node.heard.retain(|heard| heard.station != station);
+        }
+    }
+
+    /// Fits positions, scale and the biases of the active stations, each from its time on, seconds; also estimates the
+    /// scale without the station `without`.
+    pub(super) fn fit(
+        &mut self,
+        n_stations: usize,
+        active: &[(usize, f64)],
+        without: usize,
+    ) -> Option<Fitted> {
         let before = std::mem::take(&mut self.biases);
         self.biases = vec![None; n_stations];
         for (station, from_s) in active {
@@ -239,7 +254,7 @@ impl Window {
         let mut found = None;
         for _ in 0..ROUNDS {
             self.centre();
-            let mut system = self.system();
+            let mut system = self.system(None);
             system.eliminate();
             let solved = system.solve(&columns)?;
             let steps = system.back(&columns, &solved);
@@ -273,6 +288,7 @@ impl Window {
             slip_correlation: system.correlation(Column::SCALE, Column::SLIP),
             biases_m: active.iter().enumerate().filter_map(bias).collect(),
             tests: (0..n_stations).map(test).collect(),
+            scale_without: self.scale_without(&columns, without),
         };
         let is_finite = |node: &Node| {
             node.at.iter().all(|number| number.is_finite()) && node.excess_m.is_none_or(f64::is_finite)
@@ -287,6 +303,15 @@ impl Window {
         Some(fitted)
     }
 
+    /// Returns the scale that the ranges of the other stations give: the next step of a fit without this station.
+    fn scale_without(&self, columns: &[Column], station: usize) -> Option<Estimated> {
+        let mut system = self.system(Some(station));
+        system.eliminate();
+        let others: Vec<Column> = columns.iter().copied().filter(|c| *c != Column::bias(station)).collect();
+        let solved = system.solve(&others)?;
+        Some(Estimated { value: self.scale + solved.step[0], sigma: solved.sigma(0) })
+    }
+
     /// Sets the unknown excess of each fix to the one that fits its ranges best.
     fn centre(&mut self) {
         let excess_m = |node: &Node| {
@@ -297,7 +322,9 @@ impl Window {
                 let seen = node.seen(heard, stretch, bias_m);
                 (sum, information) = (sum + seen.weight * seen.residual_m, information + seen.weight);
             }
-            node.excess_m.map(|excess_m| excess_m + sum / information)
+            // A fix whose ranges were all set aside keeps its excess.
+            node.excess_m
+                .map(|excess_m| if information > 0.0 { excess_m + sum / information } else { excess_m })
         };
         let found: Vec<Option<f64>> = self.nodes.iter().map(excess_m).collect();
         for (node, excess_m) in self.nodes.iter_mut().zip(found) {
@@ -315,8 +342,8 @@ impl Window {
         (t_s - self.last_s().unwrap_or(0.0)) / 3600.0
     }
 
-    /// The linearised equations at the present estimates.
-    fn system(&self) -> System {
+    /// The linearised equations at the present estimates, without the ranges of the station `without`.
+    fn system(&self, without: Option<usize>) -> System {
         let mut system = System::new(self.nodes.len(), self.biases.len());
         system.prior(Column::SCALE, self.scale, SCALE_SIGMA);
         system.prior(Column::DRIFT, self.drift, DRIFT_SIGMA);
@@ -327,7 +354,7 @@ impl Window {
         for (index, node) in self.nodes.iter().enumerate() {
             let (hours, stretch) = (self.hours_at(node.t_s), self.stretch_at(node.t_s));
             let mut common = node.excess_m.map(|_| system.common());
-            for heard in &node.heard {
+            for heard in node.heard.iter().filter(|heard| Some(heard.station) != without) {
                 let bias_m = self.bias_at(heard.station, node.t_s);
                 let seen = node.seen(heard, stretch, bias_m.unwrap_or(0.0));
                 let by = [seen.distance_m, seen.distance_m * hours];
@@ -356,9 +383,10 @@ impl Window {
         }
     }
 
-    /// The number of fixes with a range of a station.
-    pub(super) fn heard(&self, station: usize) -> usize {
-        self.nodes.iter().filter(|node| node.heard.iter().any(|heard| heard.station == station)).count()
+    /// The number of fixes with a range of a station from a time on, seconds.
+    pub(super) fn heard(&self, station: usize, from_s: f64) -> usize {
+        let has = |node: &&Node| node.heard.iter().any(|heard| heard.station == station);
+        self.nodes.iter().filter(|node| node.t_s >= from_s).filter(has).count()
     }
 
     /// Returns the time from which the residuals of a station differ most from zero, seconds, and by how many standard

@@ -87,7 +87,7 @@ impl Run {
 
     fn hear(&mut self, sets: &[RangeSet]) {
         let result = self.whole.cycle(sets);
-        self.guard.cycle(sets, &result.fix);
+        self.guard.cycle(sets, &result.fix, None);
     }
 
     fn cycle(&mut self, biases_m: &[f64]) {
