@@ -358,6 +358,9 @@ impl Task<'_> {
             while let Some(pulsed) = tests.next_if(|pulsed| pulsed.t_s <= moment.t_s) {
                 take(&[track.pulses_tested(pulsed, survey.first_s)]);
             }
+            if moment.is_test() {
+                continue;
+            }
             moment.t_s -= survey.first_s;
             if let Some(calibration) = &survey.calibration {
                 calibration.correct(&mut moment.ranges);

@@ -13,6 +13,11 @@ use world::{Odometry, Pose, RangeSet};
 /// The length added to each arrival difference to make it a range, metres: ranges must be positive.
 const BASE_M: f64 = 100.0;
 
+/// The longest time that a file may cover, seconds: a year.
+const LONGEST_S: f64 = 366.0 * 86_400.0;
+/// The latest time of a file, and the earliest one below zero, seconds.
+const LATEST_S: f64 = 1e11;
+
 /// Time, seconds: if the time of day goes back by more than this, midnight has passed.
 const HALF_A_DAY_S: f64 = 43_200.0;
 
@@ -47,6 +52,7 @@ pub(crate) struct Moments {
     open: Option<(Row, Moment)>,
     /// The bounds of possible arrival differences in the tank.
     possible: Possible,
+    first: Option<Place>,
     last: Option<Place>,
     back: Option<Back>,
     /// A row that is held back until the out-of-order rows before it have been reported.
@@ -82,6 +88,7 @@ impl Moments {
             cells,
             open: None,
             possible,
+            first: None,
             last: None,
             back: None,
             waiting: None,
@@ -97,7 +104,29 @@ impl Moments {
         }
         let read = self.rows.next(&mut self.cells).transpose()?;
         self.count += 1;
-        Some(read.and_then(|line| self.columns.row(&self.cells, line)))
+        Some(read.and_then(|line| self.columns.row(&self.cells, line)).and_then(|row| self.timely(row)))
+    }
+
+    /// Returns a row whose time is possible: an absurd one would make the recording endless.
+    fn timely(&mut self, row: Row) -> Result<Row, Problem> {
+        let first = *self.first.get_or_insert(Place { line: row.line, t_s: row.t_s });
+        if row.t_s.abs() > LATEST_S {
+            self.first = self.first.filter(|first| first.line != row.line);
+            let what = format!("{:e} s is not a possible time; check its unit", row.t_s);
+            return Err(self.columns.wrong_time(row.line, what));
+        }
+        if row.t_s - first.t_s > LONGEST_S {
+            let what = format!(
+                "{} is {:.0} days after the first time, {} in line {}, but a file covers at most 366 days; check the \
+                 unit of the times, or divide the file",
+                row.written.shown(row.t_s),
+                (row.t_s - first.t_s) / 86_400.0,
+                row.written.shown(first.t_s),
+                first.line
+            );
+            return Err(self.columns.wrong_time(row.line, what));
+        }
+        Ok(row)
     }
 
     /// Adds a row. Returns the previous moment if the row begins a new one.
@@ -206,6 +235,15 @@ fn belongs(row: &Row, first: &Row) -> bool {
 }
 
 impl Moment {
+    /// Whether the moment only tests the stations, and says nothing about the robot.
+    pub(crate) fn is_test(&self) -> bool {
+        !self.pulses.is_empty()
+            && self.ranges.is_empty()
+            && self.odometry.is_none()
+            && self.truth.is_none()
+            && self.tool_on.is_none()
+    }
+
     fn of(first: &Row) -> Self {
         let mut moment = Self {
             t_s: first.t_s,

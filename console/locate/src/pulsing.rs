@@ -3,10 +3,10 @@
 use crate::{
     columns::{Heard, Sent},
     moments::Moment,
-    repeats::{Pooled, Scatter, mean_m},
+    repeats::{Scatter, lengths},
 };
 use mission::event::PulsePhase;
-use positioning::{Pulse, PulseError, PulseSeries, PulseTest};
+use positioning::{Pulse, PulseError, PulseSeries, PulseTest, Repetitions, repetitions::mean_m};
 use std::collections::BTreeMap;
 use world::{Station, StationId};
 
@@ -94,17 +94,17 @@ impl Group {
         for sent in &self.pulses {
             by_pair.entry((sent.sender, sent.heard.station)).or_default().push(sent.heard);
         }
-        let mut pooled = Pooled::default();
-        for heard in by_pair.values() {
-            let variance_m2 = mean_m(heard).map_or(0.0, |mean_m| scatter.variance_m2(mean_m));
-            pooled.take(heard, variance_m2);
+        let mut pooled = Repetitions::default();
+        for heard in by_pair.values().map(|heard| lengths(heard)) {
+            let variance_m2 = mean_m(&heard).map_or(0.0, |mean_m| scatter.variance_m2(mean_m));
+            pooled.take(&heard, variance_m2);
         }
         if !pooled.are_narrow() {
             return self.pulses.clone();
         }
         let one = |((sender, station), heard): (&(StationId, StationId), &Vec<Heard>)| {
             let repetitions = heard.iter().map(|one| one.repetitions).max()?;
-            let heard = Heard { station: *station, range_m: mean_m(heard)?, repetitions };
+            let heard = Heard { station: *station, range_m: mean_m(&lengths(heard))?, repetitions };
             Some(Sent { sender: *sender, heard })
         };
         by_pair.iter().filter_map(one).collect()

@@ -143,6 +143,43 @@ fn bad_rows_are_named_by_line_and_column() {
 }
 
 #[test]
+fn times_that_no_file_covers_are_bad_rows() {
+    let scenario = scenario();
+    for (times, line, part) in [
+        (["0", "1e308"], 3, "1e308 s is not a possible time"),
+        (["-1e308", "0"], 2, "-1e308 s is not a possible time"),
+        (
+            ["0", "40000000"],
+            3,
+            "463 days after the first time, 0 s in line 2, but a file covers at most 366 days",
+        ),
+    ] {
+        let rows: Vec<String> = times.iter().map(|t_s| format!("{t_s},A,5.0")).collect();
+        let text = Readable::new("r.csv", format!("t_s,station,range_m\n{}\n", rows.join("\n"))).refused();
+        assert!(text.contains(&format!("r.csv, line {line}, t_s: ")) && text.contains(part), "{text}");
+    }
+    let readable = Readable::new("r.csv", "t_s,station,range_m\n0,A,5.0\n31000000,A,5.0\n");
+    assert_eq!(readable.task(&scenario).survey().unwrap().rows, 2);
+}
+
+/// If nearly every fix contradicts itself, the common cause is found all the same.
+#[test]
+fn ranges_that_are_all_too_long_are_said_to_be_although_no_fix_is_sound() {
+    let scenario = scenario();
+    let mut text = "t_s,station,range_m\n".to_owned();
+    for k in 0..60_u32 {
+        let at = place(k);
+        for station in &scenario.sim.world.stations {
+            let range_m = (station.position - at).norm() * 1.3;
+            writeln!(text, "{k},{},{range_m}", station.name).unwrap();
+        }
+    }
+    let survey = Readable::new("r.csv", text).task(&scenario).survey().unwrap();
+    let scale = survey.verdict.scale.unwrap();
+    assert!(scale.is_proven && (scale.value - 0.3).abs() < 0.05, "{:?}", survey.verdict);
+}
+
+#[test]
 fn a_bad_row_in_the_middle_of_an_emission_does_not_divide_it() {
     let (mut good, mut bad) = (String::from("t_s,station,range_m\n"), String::new());
     for (t_s, station, range_m, _) in walk(5) {

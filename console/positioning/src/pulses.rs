@@ -69,6 +69,25 @@ pub enum PulseError {
         /// Index of the pulse.
         index: usize,
     },
+    /// A length is impossible between stations that share a clock.
+    #[error(
+        "the pulse from station {} to station {} is {:.2} m long, but only lengths from 0 to {:.2} m are possible; check its \
+         unit, and the clocks of both stations",
+        .sender.0,
+        .receiver.0,
+        .length_m,
+        .most_m
+    )]
+    Impossible {
+        /// The station that sent.
+        sender: StationId,
+        /// The station that heard.
+        receiver: StationId,
+        /// The length, metres.
+        length_m: f64,
+        /// The longest possible length, metres; see [`longest_pulse_m`].
+        most_m: f64,
+    },
     /// The pulses do not determine the speed of sound beside the clocks.
     #[error(
         "the pulses do not separate the speed of sound from the clocks; let every station send and every other hear"

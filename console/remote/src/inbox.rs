@@ -310,6 +310,15 @@ impl Inbox {
             });
             self.readings.ranges = heard.filter(|set| !set.ranges_m.is_empty()).collect();
         }
+        let of_pulses = readings.pulses.iter().flat_map(|of| [&of.sender, &of.receiver]);
+        let of_ranges = readings.ae.iter().flat_map(|ae| ae.ranges.iter().map(|of| &of.station));
+        if let Some(unknown) = of_ranges.chain(of_pulses).find(|name| !self.stations.contains_key(*name)) {
+            let known = self.stations.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
+            let what = format!(
+                "readings: the scenario has no station `{unknown}`, only {known}; its readings are not used"
+            );
+            self.notices.faulty(&what);
+        }
         let pulses = readings.pulses.iter().filter_map(|of| {
             let (sender, receiver) = (*self.stations.get(&of.sender)?, *self.stations.get(&of.receiver)?);
             Some(PulseSet { sender, receiver, lengths_m: of.lengths_m.clone() })

@@ -151,6 +151,23 @@ fn of_sound(
             format!("ranges too long by {offset_m:.4} ± {sigma_m:.4} m{}", time.unwrap_or_default()),
         );
     }
+    let wrong = survey.verdict.stations.iter().filter(|(_, wrong)| wrong.is_proven);
+    let wrong: Vec<&str> = wrong.map(|(id, _)| name_of(scenario, id.0)).collect();
+    if survey.calibration.is_some() && !wrong.is_empty() {
+        let wrong = wrong.join(", ");
+        text.line(
+            "",
+            format!(
+                "not reliable: wrong ranges ({wrong}) have spoilt the estimate; correct or remove them first"
+            ),
+        );
+    }
+    if scenario.mission.locating.session.is_some() {
+        text.line(
+            "calibration",
+            "ae.session_calibration applies to missions; a file is tested as a whole (see residuals)",
+        );
+    }
     if found.range_scale.is_some_and(|[_, sigma]| sigma > DOUBTFUL_SCALE) {
         text.line("", "poorly determined: the robot must pass both close to stations and far from them");
     }
@@ -165,9 +182,13 @@ fn residuals(args: &LocateArgs, scenario: &Scenario, survey: &Survey) -> Vec<Str
         let speed = args.sound_speed.map(|speed| speed / (1.0 + scale.value));
         let fits =
             speed.map_or_else(String::new, |speed| format!("; a speed of sound of {speed:.1} m/s fits"));
+        let remedy = if survey.calibration.is_some() {
+            "the estimate of --find does not explain them; look for a wrong station or a wrong survey"
+        } else {
+            "correct the speed of sound, or estimate it with --find sound-speed"
+        };
         lines.push(format!(
-            "all ranges are {long} by {percent:.2} ± {sigma:.2} %{fits}: none of the fixes is ok; correct the speed of \
-             sound, or estimate it with --find sound-speed"
+            "all ranges are {long} by {percent:.2} ± {sigma:.2} %{fits}: none of the fixes is ok; {remedy}"
         ));
     }
     if let Some(offset) = survey.verdict.offset_m.filter(|offset| offset.is_proven) {
@@ -250,7 +271,9 @@ fn impossible(scenario: &Scenario, doubts: &Doubts) -> Vec<String> {
     lines.extend(doubts.impossible.iter().map(|(id, refused)| {
         let (name, count) = (name_of(scenario, *id), refused.count);
         let times = if count > 1 { format!(" and {} more", count - 1) } else { String::new() };
-        let range = if refused.range_m.is_finite() {
+        let range = if refused.range_m.abs() > 1e9 {
+            format!("{:e} m", refused.range_m)
+        } else if refused.range_m.is_finite() {
             format!("{:.3} m", refused.range_m)
         } else {
             "not a number".into()

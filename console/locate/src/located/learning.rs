@@ -126,7 +126,8 @@ impl Task<'_> {
         )))
     }
 
-    /// Collects the residuals of all fixes, after the ranges have been corrected for the errors found.
+    /// Collects the residuals of the fixes, after the ranges have been corrected for the errors found. Fixes that
+    /// contradict themselves count only if most fixes do: then their errors have a common cause.
     pub(super) fn judged(
         &self,
         (columns, repeats, pulses): Known<'_>,
@@ -135,6 +136,8 @@ impl Task<'_> {
         let kind = columns.kind();
         let stations = &self.scenario.sim.world.stations;
         let mut session = Session::new(stations, kind == Kind::Differences);
+        let mut whole = session.clone();
+        let (mut alarms, mut fixes) = (0_u64, 0_u64);
         let locating = &self.scenario.mission.locating;
         let solver = if kind == Kind::Differences { SolverKind::Differences } else { locating.solver };
         let possible = self.possible();
@@ -143,13 +146,16 @@ impl Task<'_> {
             if let Some(found) = found {
                 found.corrected(&mut rangings);
             }
-            if let Ok(fix) = solver.solve(&rangings, stations, &self.noise(), None)
-                && fix.integrity != Integrity::Alarm
-            {
+            let Ok(fix) = solver.solve(&rangings, stations, &self.noise(), None) else { continue };
+            fixes += 1;
+            whole.take(&fix);
+            if fix.integrity == Integrity::Alarm {
+                alarms += 1;
+            } else {
                 session.take(&fix);
             }
         }
-        Ok(session)
+        Ok(if 2 * alarms > fixes { whole } else { session })
     }
 
     /// Returns one range for each station that was heard, leaving out impossible ranges.

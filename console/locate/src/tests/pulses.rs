@@ -192,3 +192,18 @@ fn a_test_that_contradicts_the_survey_corrects_nothing() {
     let as_read = (stations[0].position - AT).norm() * (1.0 + SCALE) + OFFSETS_M[0];
     assert!((ranged.unwrap() - as_read).abs() < 1e-6, "{ranged:?}, {as_read}");
 }
+
+/// A test after the run says nothing about the robot, which was not located then.
+#[test]
+fn a_pulse_test_after_the_run_does_not_lengthen_the_track() {
+    let scenario = scenario();
+    let readable = readings(true);
+    let task = readable.task(&scenario);
+    let (tally, events) = located(&task, &task.survey().unwrap());
+    let last_s = |is_it: fn(&EventKind) -> bool| {
+        events.iter().filter(|event| is_it(&event.kind)).map(|event| event.t_s).fold(0.0, f64::max)
+    };
+    assert_eq!(last_s(|kind| matches!(kind, EventKind::Estimated { .. })), 30.0);
+    assert_eq!(last_s(|kind| matches!(kind, EventKind::PulsesTested { .. })), 90.0);
+    assert!(tally.error_95_m.is_some_and(|[_, most_m]| most_m < 30.0), "{tally:?}");
+}

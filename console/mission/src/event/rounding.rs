@@ -173,6 +173,10 @@ impl EventKind {
                 round(&mut test.worst.2);
             }
             Self::PulsesFailed { why: PulseError::Implausible { scale }, .. } => round(scale),
+            Self::PulsesFailed { why: PulseError::Impossible { length_m, most_m, .. }, .. } => {
+                round(length_m);
+                round(most_m);
+            }
             Self::ClocksEstimated { offsets } => {
                 for offset in offsets {
                     round_estimated(&mut offset.offset_m);

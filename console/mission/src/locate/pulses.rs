@@ -4,8 +4,11 @@ use crate::{
     config::Locating,
     event::{EventKind, PulsePhase},
 };
-use positioning::{CommonError, Doubt, Pulse, PulseSeries, PulseTest, RangeNoise, Timing};
-use world::{PulseSet, RangeSet, Station};
+use positioning::{
+    CommonError, Doubt, Pulse, PulseError, PulseSeries, PulseTest, RangeNoise, Repetitions, Timing,
+    longest_pulse_m, repetitions::variance_m2,
+};
+use world::{PulseSet, RangeSet, Station, StationId};
 
 /// The pulse tests so far.
 #[derive(Clone)]
@@ -47,8 +50,10 @@ impl PulseTests {
             return None;
         }
         let phase = if self.has_ranged { PulsePhase::Held } else { PulsePhase::Before };
-        let pulses: Vec<Pulse> = sets.iter().filter_map(|set| self.pulse(set)).collect();
-        let test = match PulseTest::new(&pulses, &self.stations) {
+        let are_copies = self.are_copies(sets);
+        let pulses: Vec<Pulse> = sets.iter().filter_map(|set| self.pulse(set, are_copies)).collect();
+        let test = self.possible(&pulses).and_then(|()| PulseTest::new(&pulses, &self.stations));
+        let test = match test {
             Ok(test) => test,
             Err(why) => return Some((EventKind::PulsesFailed { phase, why }, None)),
         };
@@ -81,13 +86,47 @@ impl PulseTests {
         Some(Doubt { likely_errors: errors, ..Doubt::default() })
     }
 
+    /// Whether the repetitions of pulses scatter too little to be independent: then they count as one.
+    fn are_copies(&self, sets: &[PulseSet]) -> bool {
+        let mut repetitions = Repetitions::default();
+        for set in sets {
+            let lengths: Vec<(f64, u32)> = set.lengths_m.iter().map(|length_m| (*length_m, 1)).collect();
+            let distance_m = self.distance_m(set.sender, set.receiver);
+            repetitions.take(&lengths, variance_m2(&self.noise, self.timing, distance_m));
+        }
+        repetitions.are_narrow()
+    }
+
+    /// # Errors
+    /// A length is impossible, although the stations share a clock.
+    fn possible(&self, pulses: &[Pulse]) -> Result<(), PulseError> {
+        let impossible = |pulse: &&Pulse| {
+            let most_m = longest_pulse_m(self.distance_m(pulse.sender, pulse.receiver));
+            !(0.0..=most_m).contains(&pulse.length_m)
+        };
+        match pulses.iter().find(impossible).filter(|_| !self.has_clocks) {
+            Some(&Pulse { sender, receiver, length_m, .. }) => Err(PulseError::Impossible {
+                sender,
+                receiver,
+                length_m,
+                most_m: longest_pulse_m(self.distance_m(sender, receiver)),
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// Distance between two stations, metres; 0 if one is not surveyed.
+    fn distance_m(&self, sender: StationId, receiver: StationId) -> f64 {
+        let at = |id| self.stations.iter().find(|station| station.id == id).map(|station| station.position);
+        at(sender).zip(at(receiver)).map_or(0.0, |(from, to)| (from - to).norm())
+    }
+
     /// The mean of repeated pulses; `None` without any.
-    fn pulse(&self, set: &PulseSet) -> Option<Pulse> {
+    fn pulse(&self, set: &PulseSet, are_copies: bool) -> Option<Pulse> {
         let n = set.lengths_m.len() as f64;
         let length_m = set.lengths_m.iter().sum::<f64>() / n;
-        let at = |id| self.stations.iter().find(|station| station.id == id).map(|station| station.position);
-        let distance_m = at(set.sender).zip(at(set.receiver)).map_or(0.0, |(from, to)| (from - to).norm());
-        let share_m = self.noise.sigma_ratio() * distance_m;
+        let n = if are_copies { n.min(1.0) } else { n };
+        let share_m = self.noise.sigma_ratio() * self.distance_m(set.sender, set.receiver);
         let sigma_m = (share_m / n.sqrt()).hypot(self.timing.mean_sigma_m(share_m, n));
         (n > 0.0).then_some(Pulse { sender: set.sender, receiver: set.receiver, length_m, sigma_m })
     }
@@ -171,5 +210,31 @@ mod tests {
         let mut ranges = range();
         tests.correct(&mut ranges);
         assert_eq!(ranges, range());
+    }
+
+    fn sigma_of(sets: &[PulseSet]) -> f64 {
+        match tests(None).take(sets).unwrap().0 {
+            EventKind::PulsesTested { test, .. } => test.scale.sigma,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn copies_of_a_pulse_count_as_one() {
+        let mut once = exchange([0.0; 4]);
+        once.iter_mut().for_each(|set| set.lengths_m.truncate(1));
+        let mut copied = once.clone();
+        copied.iter_mut().for_each(|set| set.lengths_m = vec![set.lengths_m[0]; 30]);
+        assert!((sigma_of(&copied) / sigma_of(&once) - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn lengths_that_no_common_clock_allows_are_refused() {
+        for late_m in [450.0, -450.0] {
+            let (event, agreeing) = tests(None).take(&exchange([0.0, late_m, 0.0, 0.0])).unwrap();
+            let is_impossible =
+                matches!(event, EventKind::PulsesFailed { why: PulseError::Impossible { .. }, .. });
+            assert!(is_impossible && agreeing.is_none(), "{event:?}");
+        }
     }
 }

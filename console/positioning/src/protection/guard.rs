@@ -40,6 +40,9 @@ pub struct Guard {
     is_explained: bool,
     /// Cycles in a row without a fix.
     silent: u32,
+    /// Ticks since the last fix, and the least number of ticks between two fixes so far.
+    waited: u32,
+    usual_wait: Option<u32>,
 }
 
 /// The hypothesis that a station is wrong.
@@ -84,11 +87,14 @@ impl Guard {
             is_on_line: are_on_line(&config.stations),
             is_explained: true,
             silent: 0,
+            waited: 0,
+            usual_wait: None,
         }
     }
 
     /// Moves all hypotheses by one tick of odometry.
     pub fn predict(&mut self, odometry: &Odometry) {
+        self.waited = self.waited.saturating_add(1);
         self.others.iter_mut().for_each(|other| other.positioner.predict(odometry));
     }
 
@@ -122,8 +128,22 @@ impl Guard {
         for other in &mut self.others {
             is_explained |= other.explains(sets, session);
         }
-        self.is_explained = is_explained;
-        self.silent = if whole.is_ok() { 0 } else { self.silent.saturating_add(1) };
+        // If two stations were found wrong at once, it is uncertain which two.
+        let is_one = session.is_none_or(|session| session.biases_m().count() <= 1);
+        self.is_explained = is_explained && is_one;
+        if whole.is_ok() {
+            let waited = std::mem::take(&mut self.waited);
+            self.usual_wait = self.usual_wait.into_iter().chain((waited > 0).then_some(waited)).min();
+            self.silent = 0;
+        } else {
+            self.silent = self.silent.saturating_add(1);
+        }
+    }
+
+    /// Whether the last fix is too old: too many cycles without a fix, or the time of as many cycles without any.
+    fn is_silent(&self) -> bool {
+        let is_late = |usual: u32| self.waited >= usual.saturating_mul(MOST_SILENT);
+        self.silent >= MOST_SILENT || self.usual_wait.is_some_and(is_late)
     }
 
     /// Returns the protection level of a position with its covariance, metres.
@@ -138,7 +158,7 @@ impl Guard {
         if self.is_on_line {
             return Err(Unprotected::OnOneLine);
         }
-        if self.silent >= MOST_SILENT {
+        if self.is_silent() {
             return Err(Unprotected::Silent);
         }
         if !self.is_explained {

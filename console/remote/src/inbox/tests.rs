@@ -133,6 +133,10 @@ fn pulses_of_all_messages_of_a_tick_are_kept_by_station() {
     let pairs: Vec<_> =
         sensed.pulses.iter().map(|set| (set.sender, set.receiver, set.lengths_m.len())).collect();
     assert_eq!(pairs, [(StationId(1), StationId(2), 2), (StationId(2), StationId(1), 2)]);
+    assert_eq!(
+        inbox.notices.last_fault(),
+        "readings: the scenario has no station `unknown`, only A, B; its readings are not used"
+    );
     // Pulses do not count as a ranging cycle of the robot.
     assert!(!sensed.ranging_cycle && inbox.sense(0.3).readings.pulses.is_empty());
 }
