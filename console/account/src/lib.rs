@@ -29,6 +29,7 @@ mod sampled;
 mod samples;
 mod scanned;
 mod silence;
+mod stretch;
 pub mod summary;
 mod tethered;
 mod tracking;

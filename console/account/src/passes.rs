@@ -1,6 +1,6 @@
 //! The passes of the tool according to the estimated position: accuracy, number of passes, and guaranteed floor.
 
-use crate::overlap::Overlap;
+use crate::{overlap::Overlap, stretch::Stretch};
 use nalgebra::Matrix2;
 use positioning::fix::{across_95_m, ellipse_95};
 use world::{CellRun, CoverageGrid, Floor, Pose, Tool, ToolPart};
@@ -23,6 +23,7 @@ pub struct Passes {
     /// The smallest 95 % error with which each cell was passed, millimetres.
     error_mm: Vec<u16>,
     overlap: Overlap,
+    stretch: Stretch,
 }
 
 /// What is known about the position of a pass.
@@ -68,14 +69,15 @@ impl Passes {
             times: 0,
             error_mm: vec![NEVER; floor.len()],
             overlap: Overlap::new(floor.width, floor.len()),
+            stretch: Stretch::default(),
         }
     }
 
     /// Adds a pass of the tool from one estimated pose to the next; it counts as scanned under the given parts of the tool,
     /// whose channels work.
     ///
-    /// Floor that is under the tool for every position within the margin of the estimate is guaranteed. To find it, the
-    /// tool is narrowed on each side by the margin.
+    /// Floor that the tool passed for every position within the margin of the estimate is guaranteed. To find it, the tool is
+    /// narrowed on each side by the margin, and each stretch is shortened at both ends by as much.
     pub(crate) fn pass(
         &mut self,
         believed: &CoverageGrid,
@@ -95,10 +97,19 @@ impl Passes {
         for run in cells {
             self.error_mm[run.range()].iter_mut().for_each(|mm| *mm = (*mm).min(error_mm));
         }
-        for run in runs_under(floor, parts, (from, to), |part| part.tool().narrowed(margin_m)) {
-            let first_ms = self.guaranteed_ms[run.range()].iter_mut();
-            first_ms.for_each(|first_ms| *first_ms = (*first_ms).min(milliseconds(t_s)));
+        // Whatever its place, a disc that is narrowed by the margin was under the tool.
+        let behind_m = if matches!(self.tool, Tool::Disc { .. }) { 0.0 } else { margin_m };
+        for poses in self.stretch.sure((from, to), behind_m) {
+            for run in runs_under(floor, parts, poses, |part| part.tool().narrowed(margin_m)) {
+                let first_ms = self.guaranteed_ms[run.range()].iter_mut();
+                first_ms.for_each(|first_ms| *first_ms = (*first_ms).min(milliseconds(t_s)));
+            }
         }
+    }
+
+    /// The next pass does not continue the last one.
+    pub(crate) fn interrupt(&mut self) {
+        self.stretch = Stretch::default();
     }
 
     /// The tool.
@@ -108,6 +119,7 @@ impl Passes {
 
     /// Takes back the guarantee of cells that no pass before `since_s`, seconds, guarantees. Returns their number.
     pub(crate) fn take_back(&mut self, since_s: f64) -> usize {
+        self.interrupt();
         let since_ms = milliseconds(since_s);
         self.times = self.times.saturating_add(1);
         let mut count = 0;

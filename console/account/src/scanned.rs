@@ -92,8 +92,10 @@ impl Scanned {
     /// Adds the estimated pose, with its margins if the pass counts.
     pub(crate) fn visit(&mut self, here: Pose, margins: Option<Margins>) {
         let before = std::mem::replace(&mut self.last, here);
-        if let Some(margins) = margins {
-            self.passes.pass(&self.believed, &self.live, (before, here), margins);
+        match margins {
+            Some(margins) => self.passes.pass(&self.believed, &self.live, (before, here), margins),
+            None if before.position == here.position => {}
+            None => self.passes.interrupt(),
         }
     }
 

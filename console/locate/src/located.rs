@@ -17,7 +17,7 @@ use mission::{
     Event, EventKind, Locator, MissionConfig, Outcome, PlannerChoice,
     event::{Asked, Measured, ToolTrack},
 };
-use positioning::{Agreement, Doubt, Possible, PulseSeries, RangeNoise, SolverKind, Verdict};
+use positioning::{Agreement, CommonError, Doubt, Possible, PulseSeries, RangeNoise, SolverKind, Verdict};
 use scenario::Scenario;
 use std::path::Path;
 use world::{CoverageGrid, ObstacleMap, RangeSet, StationId, Tool};
@@ -179,7 +179,8 @@ impl Task<'_> {
             None if self.scenario.mission.locating.calibrate_sound_speed => self.found_under_way(known)?,
             found => found,
         };
-        let verdict = self.judged(known, assumed.as_ref())?.verdict();
+        let by_pulses = pulse_series.sigmas().unwrap_or_default();
+        let verdict = self.judged(known, assumed.as_ref())?.verdict().beside(by_pulses);
         intervals_s.sort_by(f64::total_cmp);
         let tool_on = self.tool_on(in_file, stretches, [first.t_s, last.t_s])?;
         let from_first = |[from_s, to_s]: [f64; 2]| [from_s - first.t_s, to_s - first.t_s];
@@ -221,9 +222,9 @@ impl Task<'_> {
         let tests = pulsing.tests(&self.scenario.sim.world.stations, (sigma_m, &scatter)).map_err(
             |(phase, what)| bad_input(format!("{}: pulses {}: {what}", self.shown, phase.words())),
         )?;
-        if !tests.is_empty() && (self.finds_sound_speed || self.finds_clock_offset) {
+        if !tests.is_empty() && self.finds_sound_speed {
             return Err(bad_input(format!(
-                "{}: the pulses of the stations already give the speed of sound and the clocks; leave out --find",
+                "{}: the pulses of the stations already give the speed of sound; leave out --find sound-speed",
                 self.shown
             )));
         }
@@ -352,9 +353,14 @@ impl Task<'_> {
         let scale = survey.verdict.scale;
         let ratio = scale.filter(|scale| scale.is_proven).map_or(0.0, |scale| scale.value.abs());
         let is_emission_free = survey.kind == Kind::Differences;
-        let likely_errors = survey.verdict.likely_errors(is_emission_free);
+        let pulses = series(&survey.pulses);
+        let (pulse_share, pulse_m) = pulses.sigmas().unwrap_or_default();
+        let likely_errors = match survey.verdict.likely_errors(is_emission_free) {
+            [CommonError::Share(share), length] => [CommonError::Share(share.hypot(pulse_share)), length],
+            errors => errors,
+        };
         let mut tests = survey.pulses.iter().peekable();
-        for mut moment in self.moments(&survey.repeats, &series(&survey.pulses))? {
+        for mut moment in self.moments(&survey.repeats, &pulses)? {
             while let Some(pulsed) = tests.next_if(|pulsed| pulsed.t_s <= moment.t_s) {
                 take(&[track.pulses_tested(pulsed, survey.first_s)]);
             }
@@ -369,7 +375,7 @@ impl Task<'_> {
             let is_suspect = repeats.is_some() || survey.verdict.is_wrong();
             let offset = survey.verdict.offset_m.filter(|offset| offset.is_proven);
             let sigma_m = repeats.unwrap_or_default().hypot(offset.map_or(0.0, |offset| offset.value));
-            let likely_m = survey.repeats.likely_m(&moment, &scatter);
+            let likely_m = survey.repeats.likely_m(&moment, &scatter).hypot(pulse_m);
             track.locator.doubt(Doubt { ratio, likely_errors, sigma_m, likely_m, is_suspect });
             take(&track.events(&moment));
         }

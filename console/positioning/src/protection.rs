@@ -161,11 +161,12 @@ pub fn level_m(fix: &Fix, stations: &[Station], risk: &Risk, is_emission_free: b
     let degrees_of_freedom = u32::try_from(fix.used.len() - unknowns).ok()?;
     let limit_without = alarm_limit(degrees_of_freedom - 1);
     let mut is_explained = fix.chi2 <= alarm_limit(degrees_of_freedom);
-    let mut level_m = reach_m(&position_part(&seen.covariance), multipliers.fault_free);
+    let mut level_m = reach_m(&position_part(&seen.covariance), multipliers.fault_free)
+        + seen.other_side_m(None, &seen.whole(), multipliers.fault_free)?;
     for index in 0..seen.rows.len() {
         let without = seen.without(index)?;
         is_explained |= fix.chi2 - without.explained <= limit_without;
-        let apart_m = without.shift_m.max(seen.other_side_m(index, &without, multipliers.one_fault)?);
+        let apart_m = without.shift_m.max(seen.other_side_m(Some(index), &without, multipliers.one_fault)?);
         level_m = level_m.max(apart_m + reach_m(&without.covariance, multipliers.one_fault));
     }
     Some(level_m).filter(|level_m| is_explained && level_m.is_finite())
@@ -265,15 +266,25 @@ impl Seen {
         })
     }
 
-    /// Returns the distance from the fix to the mirror image of the position without a station, metres; 0 if the other
-    /// ranges exclude it.
-    fn other_side_m(&self, index: usize, without: &Without, sigmas: f64) -> Option<f64> {
-        let row = &self.rows[index];
-        if !self.layout.is_flat_without(row.station, row.weight) {
+    /// The position with all stations: the fix.
+    fn whole(&self) -> Without {
+        Without {
+            shift_m: 0.0,
+            position: self.position,
+            covariance: position_part(&self.covariance),
+            explained: 0.0,
+        }
+    }
+
+    /// Returns the distance from the fix to the mirror image of the position without a station, or with all stations,
+    /// metres; 0 if the ranges of these stations exclude it.
+    fn other_side_m(&self, left_out: Option<usize>, without: &Without, sigmas: f64) -> Option<f64> {
+        let station = left_out.map(|index| (self.rows[index].station, self.rows[index].weight));
+        if !self.layout.is_flat(station) {
             return Some(0.0);
         }
-        let others = self.rows[..index].iter().chain(&self.rows[index + 1..]);
-        let anchors: Vec<Anchor> = others.map(Row::anchor).collect();
+        let others = self.rows.iter().enumerate().filter(|(index, _)| Some(*index) != left_out);
+        let anchors: Vec<Anchor> = others.map(|(_, row)| row.anchor()).collect();
         let away_m = other_side_m(&anchors, without.position, self.is_emission_free, sigmas * sigmas)?;
         Some(if away_m > 0.0 { away_m + without.shift_m } else { 0.0 })
     }

@@ -188,11 +188,6 @@ impl PulseTest {
         })
     }
 
-    /// Returns the offset of a station, metres; 0 for a station that took no part.
-    pub fn offset_m(&self, station: StationId) -> f64 {
-        self.offsets_m.iter().find(|(id, _)| *id == station).map_or(0.0, |(_, offset)| offset.value)
-    }
-
     /// Whether ranges are corrected by this test: not if its pulses contradict the survey.
     pub fn is_usable(&self) -> bool {
         self.integrity != Integrity::Alarm
@@ -224,7 +219,9 @@ impl PulseTest {
 
 /// Pulse tests of a session, in the order of their times.
 ///
-/// Between two tests, speed of sound and clocks change linearly; before the first and after the last one, they stay.
+/// Between two tests, speed of sound and clocks change linearly; before the first and after the last one, they stay. The
+/// offsets of a test are relative to the mean of its stations, so those of all tests are made relative to the mean of the
+/// stations that took part in every test. A station that took no part in one of two tests keeps the offset of the other.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct PulseSeries {
     /// The tests with their times, seconds.
@@ -235,12 +232,42 @@ impl PulseSeries {
     /// Removes the errors at a time, seconds, from sets of ranges of a robot: `(range - offset) / (1 + scale)`.
     pub fn correct(&self, t_s: f64, sets: &mut [RangeSet]) {
         let Some((before, after, share)) = self.around(t_s) else { return };
-        let between = |of: &dyn Fn(&PulseTest) -> f64| (1.0 - share) * of(before) + share * of(after);
-        let by = 1.0 / (1.0 + between(&|test| test.scale.value));
+        let between = |before: f64, after: f64| (1.0 - share) * before + share * after;
+        let by = 1.0 / (1.0 + between(before.scale.value, after.scale.value));
+        let datums_m = [before, after].map(|test| self.datum_m(test));
         for set in sets {
-            let offset_m = between(&|test| test.offset_m(set.station));
+            let own_m = |test: &PulseTest, datum_m: f64| {
+                let (_, offset_m) = test.offsets_m.iter().find(|(id, _)| *id == set.station)?;
+                Some(offset_m.value - datum_m)
+            };
+            let offset_m = match (own_m(before, datums_m[0]), own_m(after, datums_m[1])) {
+                (Some(before_m), Some(after_m)) => between(before_m, after_m),
+                (before_m, after_m) => before_m.or(after_m).unwrap_or(0.0),
+            };
             set.ranges_m.iter_mut().for_each(|range_m| *range_m = (*range_m - offset_m) * by);
         }
+    }
+
+    /// The mean offset in a test of the stations that took part in every test, metres.
+    fn datum_m(&self, test: &PulseTest) -> f64 {
+        let is_in_all = |id: &StationId| {
+            self.tests.iter().all(|(_, other)| other.offsets_m.iter().any(|(station, _)| station == id))
+        };
+        let common: Vec<f64> =
+            test.offsets_m.iter().filter(|(id, _)| is_in_all(id)).map(|(_, offset)| offset.value).collect();
+        // The offsets of a test are relative to their mean already.
+        let is_whole = common.is_empty() || common.len() == test.offsets_m.len();
+        if is_whole { 0.0 } else { common.iter().sum::<f64>() / common.len() as f64 }
+    }
+
+    /// The errors that corrected ranges probably still have, as standard deviations: the share by which all are too long,
+    /// and the length by which those of a station are, metres. `None` without a test.
+    pub fn sigmas(&self) -> Option<(f64, f64)> {
+        let tests = || self.tests.iter().map(|(_, test)| test);
+        let offset_m =
+            tests().flat_map(|test| &test.offsets_m).map(|(_, offset_m)| offset_m.sigma).fold(0.0, f64::max);
+        let scale = tests().map(|test| test.scale.sigma).reduce(f64::max)?;
+        Some((scale, offset_m))
     }
 
     /// The tests before and after a time, and the share of the way between them.

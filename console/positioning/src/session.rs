@@ -121,6 +121,19 @@ impl Verdict {
             || self.stations.iter().any(|(_, wrong)| wrong.is_proven)
     }
 
+    /// Returns the findings about ranges that were corrected beforehand, by a share and by a length for each station with
+    /// these standard deviations: what these explain proves nothing.
+    #[must_use]
+    pub fn beside(mut self, (share, length_m): (f64, f64)) -> Self {
+        let allow = |wrong: &mut Wrong, known: f64| {
+            wrong.sigma = wrong.sigma.hypot(known);
+            wrong.is_proven &= wrong.value.abs() > SIGNIFICANT * wrong.sigma;
+        };
+        self.scale.iter_mut().for_each(|scale| allow(scale, share));
+        self.stations.iter_mut().for_each(|(_, wrong)| allow(wrong, length_m));
+        self
+    }
+
     /// Returns the unproven but likely errors of all ranges, as standard deviations.
     pub fn likely_errors(&self, is_emission_free: bool) -> [CommonError; 2] {
         let likely = |wrong: Option<Wrong>| {

@@ -88,6 +88,10 @@ pub(super) fn human(
 /// The pulse tests of the stations, one line each, each followed by its consequence if it has one.
 fn pulses(scenario: &Scenario, survey: &Survey) -> Vec<String> {
     let (mut lines, mut before) = (Vec::new(), None);
+    let took_part =
+        |id| survey.pulses.iter().any(|p| p.test.offsets_m.iter().any(|(station, _)| *station == id));
+    let absent = scenario.sim.world.stations.iter().filter(|station| !took_part(station.id));
+    let absent: Vec<&str> = absent.map(|station| station.name.as_str()).collect();
     for Pulsed { phase, test, .. } in &survey.pulses {
         let text = pulse_text(*phase, test, &scenario.sim.world.stations);
         lines.push(text.strip_prefix("pulse test ").unwrap_or(&text).to_owned());
@@ -96,6 +100,9 @@ fn pulses(scenario: &Scenario, survey: &Survey) -> Vec<String> {
             continue;
         }
         lines.extend(before.replace(test).and_then(|before| change_text(before, test)));
+    }
+    if !survey.pulses.is_empty() && !absent.is_empty() {
+        lines.push(format!("took no part: {}; the clock is taken to be right", absent.join(", ")));
     }
     lines
 }

@@ -108,7 +108,7 @@ fn wrong_pulses_are_named_with_row_and_remedy() {
     let readable = readings(true);
     let task = crate::Task { finds_sound_speed: true, ..readable.task(&scenario) };
     let twice = task.survey().unwrap_err().to_string();
-    assert!(twice.contains("already give the speed of sound and the clocks; leave out --find"), "{twice}");
+    assert!(twice.contains("already give the speed of sound; leave out --find sound-speed"), "{twice}");
 }
 
 /// A file with pulses before the robot, in which one length is replaced.

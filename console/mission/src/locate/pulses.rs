@@ -81,9 +81,9 @@ impl PulseTests {
 
     /// The error that corrected ranges probably still have; `None` if they are not corrected.
     pub(super) fn doubt(&self) -> Option<Doubt> {
-        let (_, test) = self.last.tests.last()?;
-        let errors = [CommonError::Share(test.scale.sigma), CommonError::default()];
-        Some(Doubt { likely_errors: errors, ..Doubt::default() })
+        let (share, likely_m) = self.last.sigmas()?;
+        let errors = [CommonError::Share(share), CommonError::default()];
+        Some(Doubt { likely_errors: errors, likely_m, ..Doubt::default() })
     }
 
     /// Whether the repetitions of pulses scatter too little to be independent: then they count as one.

@@ -142,6 +142,9 @@ impl Heard {
         let mut level_m = multipliers.fault_free * largest_sigma_m(&self.covariance);
         let layout =
             Layout::of(self.anchors.iter().zip(&self.rows).map(|(anchor, row)| (anchor.at, row.weight)));
+        if layout.is_flat(None) {
+            level_m += self.other_side_m(None, multipliers.fault_free)?;
+        }
         for (index, row) in self.rows.iter().enumerate() {
             let pull = self.covariance * row.direction;
             let spared = 1.0 / row.weight - row.direction.dot(&pull) - self.shared;
@@ -149,8 +152,8 @@ impl Heard {
                 return None;
             }
             let without = self.covariance + pull * pull.transpose() / spared;
-            let other_side_m = if layout.is_flat_without(self.anchors[index].at, row.weight) {
-                self.other_side_m(index, multipliers.one_fault)?
+            let other_side_m = if layout.is_flat(Some((self.anchors[index].at, row.weight))) {
+                self.other_side_m(Some(index), multipliers.one_fault)?
             } else {
                 0.0
             };
@@ -160,10 +163,11 @@ impl Heard {
         Some(level_m).filter(|level_m| level_m.is_finite())
     }
 
-    /// Returns the distance to the mirror image that the ranges without one station allow, metres; 0 if they exclude it.
-    fn other_side_m(&self, index: usize, sigmas: f64) -> Option<f64> {
-        let mut others = self.anchors.clone();
-        others.remove(index);
+    /// Returns the distance to the mirror image that the ranges allow, without one station if one is given, metres; 0 if they
+    /// exclude it.
+    fn other_side_m(&self, left_out: Option<usize>, sigmas: f64) -> Option<f64> {
+        let others = self.anchors.iter().enumerate().filter(|(index, _)| Some(*index) != left_out);
+        let others: Vec<Anchor> = others.map(|(_, anchor)| *anchor).collect();
         other_side_m(&others, self.place, self.shared > 0.0, sigmas * sigmas)
     }
 }

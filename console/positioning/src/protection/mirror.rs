@@ -31,11 +31,12 @@ impl Layout {
         Self { mean, weight, scatter: scatter.map(|(away, w)| away * away.transpose() * w).sum() }
     }
 
-    /// Whether the other stations are nearly on a line. Cost: 10 ns.
-    pub(crate) fn is_flat_without(&self, at: Point, weight: f64) -> bool {
-        let away = at.coords - self.mean;
-        let scatter =
-            self.scatter - away * away.transpose() * (weight * self.weight / (self.weight - weight));
+    /// Whether the stations are nearly on a line, without the one at this place if one is given. Cost: 10 ns.
+    pub(crate) fn is_flat(&self, without: Option<(Point, f64)>) -> bool {
+        let scatter = without.map_or(self.scatter, |(at, weight)| {
+            let away = at.coords - self.mean;
+            self.scatter - away * away.transpose() * (weight * self.weight / (self.weight - weight))
+        });
         let (a, b, c) = (scatter[(0, 0)], scatter[(0, 1)], scatter[(1, 1)]);
         let (middle, half) = (f64::midpoint(a, c), ((a - c).powi(2) / 4.0 + b * b).sqrt());
         middle - half < FLAT * FLAT * (middle + half)

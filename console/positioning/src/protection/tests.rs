@@ -77,7 +77,7 @@ fn beyond_in_any_layout(is_emission_free: bool, layouts: u32, seed: u64) -> (usi
             } else {
                 Screened(Nls).solve(&ranges, &stations, None)
             };
-            let Some(fix) = fix.ok().filter(|fix| fix.mirror.is_none()) else { continue };
+            let Ok(fix) = fix else { continue };
             let Some(level_m) = level_m(&fix, &stations, &risk, is_emission_free) else { continue };
             stated += 1;
             if (fix.position - at).norm() > level_m {
