@@ -335,7 +335,7 @@ fn the_pull_the_slack_and_the_loops_of_a_tether_are_shown() {
         *measured = Some(MeasuredPull { pull_n: 3.4, slack_m: 0.16 });
     }
     let line = [(9.4, 0.0), (4.0, 3.0), (3.0, -3.0)].map(|(x, y)| world::Point::new(x, y)).to_vec();
-    let lies = world::CableLies { line, under_hull: false, reel_pull_n: 3.4 };
+    let lies = world::CableLies { line, under_hull: false, reel_pull_n: 3.4, torn: false };
     let truth = screen.mission.now(EventKind::TetherTruth {
         length_m: 12.0,
         wrap_max_rad: 0.0,
