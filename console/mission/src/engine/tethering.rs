@@ -8,7 +8,7 @@ use crate::{
 use world::{Point, Readings};
 
 impl Known {
-    /// Moves the cable along with the robot; returns the limit reached in this tick, if any.
+    /// Moves the cable along with the robot; returns the limit reached in this tick, or the break of a torn cable.
     pub(super) fn drag_tether(
         &mut self,
         map_changed: bool,
@@ -35,6 +35,7 @@ impl Known {
             EventKind::TetherAlarmRaised { alarm, reached: true } => Some(alarm.clone()),
             _ => None,
         });
+        let reached = reached.or_else(|| tether.torn());
         happened.extend(events);
         reached
     }

@@ -26,6 +26,9 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
 }
 
 fn note(look: &Look) -> &'static str {
+    if look.run.tether.as_ref().is_some_and(|tether| tether.is_broken) {
+        return "BROKEN";
+    }
     match look.run.tether.as_ref().and_then(|tether| tether.certified) {
         Some(true) => "plan certified",
         Some(false) => "NOT certified",
