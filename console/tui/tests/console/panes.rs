@@ -355,6 +355,25 @@ fn the_pull_the_slack_and_the_loops_of_a_tether_are_shown() {
 }
 
 #[test]
+fn a_broken_tether_is_named_by_pane_and_alarm() {
+    let mut screen = Screen::tethered();
+    let alarm = TetherAlarm::Broken { paid_out_m: 0.0, needed_m: 5.2 };
+    let held = HoldReason::Tether { message: alarm.to_string() };
+    let alarmed = screen.mission.now(EventKind::TetherAlarmRaised { alarm, reached: true });
+    let events = vec![screen.mission.cable(), alarmed, screen.mission.held_until(held, Resumes::Never)];
+    screen.hear(RunMsg::Events(events));
+    for size in [(120, 36), (80, 24)] {
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        screen.type_text("3");
+        let shown = text(&drawn(&screen.model, RICH, size));
+        assert!(shown.lines().any(|line| line.contains("Tether") && line.contains("BROKEN")), "{shown}");
+        screen.type_text("4");
+        let shown = text(&drawn(&screen.model, RICH, size));
+        assert!(shown.contains("tether BROKEN") && shown.contains("CRIT"), "{size:?}\n{shown}");
+    }
+}
+
+#[test]
 fn a_blocked_return_path_is_named_by_the_pane_and_the_alarm_at_every_size() {
     let mut screen = Screen::tethered();
     let mut cable = screen.mission.cable();
