@@ -13,6 +13,7 @@
 mod alarms;
 mod certifying;
 mod driven;
+mod homeward;
 mod payout;
 mod slack;
 mod survey;

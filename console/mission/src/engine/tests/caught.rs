@@ -272,3 +272,40 @@ fn a_torn_cable_ends_a_mission_without_an_operator() {
     let is_reason = |event: &Event| matches!(&event.kind, EventKind::Ended { reason, .. } if reason.contains("tether broken: 0.0 m"));
     assert!(flight.events.iter().any(is_reason));
 }
+
+#[test]
+fn a_robot_with_a_slack_cable_drives_back_by_the_place_where_the_cable_last_pulled() {
+    let anchor = covering().start.position;
+    let limits = tether::Limits { reel_length_m: 50.0, wrap_max_rad: 50.0, wrap_total_max_rad: 50.0 };
+    let config = TetherConfig { anchor, limits, friction: 0.3, reel: None, allow_uncertified: false };
+    let mut flight = Flight::new(MissionConfig { tether: Some(config), attended: true, ..covering() });
+    flight.reel = cable(anchor, &[]);
+    flight.tick(&[Order::Start]);
+    let mut stopped: Option<(f64, Point)> = None;
+    while flight.held_by().is_none() {
+        flight.tick(&[]);
+        let taut_m = flight.reel.as_ref().unwrap().length_m();
+        if stopped.is_none() && covered(&flight) >= 0.3 {
+            stopped = Some((taut_m, flight.pose.position));
+        }
+        if let Some((out_m, at)) = &mut stopped {
+            // The cable pulls as long as the robot draws more of it out.
+            if taut_m >= *out_m {
+                (*out_m, *at) = (taut_m, flight.pose.position);
+            }
+            flight.caught_m = *out_m - taut_m;
+        }
+        flight.pull_n = Some(if flight.caught_m > 0.01 { 0.0 } else { 3.0 });
+    }
+    let (_, last_pulled_at) = stopped.unwrap();
+    assert!(matches!(flight.held_by(), Some(HoldReason::Tether { .. })));
+    flight.tick(&[Order::DriveBack]);
+    let way = flight.events.iter().find_map(|event| match &event.kind {
+        EventKind::ReturnBegan { way } => Some(way.path.clone()),
+        _ => None,
+    });
+    let way = way.unwrap();
+    let passes_m = way.iter().map(|at| (at - last_pulled_at).norm()).fold(f64::INFINITY, f64::min);
+    assert!(passes_m < 0.15, "{passes_m} m from the place where the cable last pulled");
+    assert!((way.last().unwrap() - anchor).norm() < 0.3, "{way:?}");
+}
