@@ -352,6 +352,15 @@ fn the_pull_the_slack_and_the_loops_of_a_tether_are_shown() {
             assert!(shown.contains(words), "{size:?} {words}:\n{shown}");
         }
     }
+    // In a small pane, slack near its limit takes the place of the wrap.
+    let mut cable = screen.mission.cable();
+    if let EventKind::Tethered { measured, .. } = &mut cable.kind {
+        *measured = Some(MeasuredPull { pull_n: 0.0, slack_m: 0.19 });
+    }
+    screen.hear(RunMsg::Events(vec![cable]));
+    screen.send(Msg::Resize { width: 80, height: 24 });
+    let shown = text(&drawn(&screen.model, RICH, (80, 24)));
+    assert!(shown.contains("slack 0.19 of 0.20 m"), "{shown}");
 }
 
 #[test]
