@@ -55,7 +55,8 @@ impl Tether {
     }
 }
 
-/// A way beside another one, on the outer side of its bends; beside a straight way, to the `left` of it or to the right. Where there is no room, it is nearer to the other way. It begins and ends with the other way.
+/// A way beside another one, on the outer side of its bends; beside a straight way, to the `left` of it or to the right. Where
+/// there is no room, it is nearer to the other way. It begins and ends with the other way.
 fn beside(way: &[Point], left: bool, by_m: f64, has_room: impl Fn(Point) -> bool) -> Vec<Point> {
     let sides = sides(way, left);
     let (Some(first), Some(last)) = (way.first(), way.last()) else { return Vec::new() };
