@@ -118,7 +118,9 @@ mod tests {
             tethered.cross(is_over_own);
         }
         assert_eq!(tethered.tether(None, None).unwrap().over_own, Some(2));
-        [7.0, 9.0].into_iter().for_each(|t_s| tethered.tear(t_s));
+        for t_s in [7.0, 9.0] {
+            tethered.tear(t_s);
+        }
         assert_eq!(tethered.tether(None, None).unwrap().broken_at_s, Some(7.0));
     }
 }
