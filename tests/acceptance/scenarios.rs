@@ -80,6 +80,25 @@ fn a_heavy_cable_is_taken_up_and_a_reel_that_stops_holds_the_robot_before_it_dri
 }
 
 #[test]
+fn a_cable_that_tears_ends_an_unattended_mission_with_the_reason_and_is_in_the_report() {
+    let bench = Bench::new();
+    let torn = bench.fly(&scenario("tether-breaks.toml"), &["--no-record"]).json();
+    let reason = torn["reason"].as_str().unwrap();
+    assert!(reason.contains("tether broken: ") && reason.contains(" m are off the reel"), "{reason}");
+    let found_s = torn["tether"]["broken_at_s"].as_f64().unwrap();
+    assert!((200.0..220.0).contains(&found_s), "{torn}");
+    assert_eq!(
+        (&torn["violations"], &torn["tether"]["snags"]),
+        (&serde_json::json!([]), &0.into()),
+        "{torn}"
+    );
+    // A pull that the cable does not bear tears it as well; the plan pulls at the robot with at least the pull of the reel.
+    let weak = ["--no-record", "--set", "tether.breaks_at_n=20", "--set", "tether.breaks_at_s=3000"];
+    let weak = bench.fly(&scenario("tether-breaks.toml"), &weak).json();
+    assert!(weak["reason"].as_str().unwrap().contains("tether broken: "), "{weak}");
+}
+
+#[test]
 fn the_guide_to_cable_and_reel_has_the_pulls_that_the_program_computes() {
     let bench = Bench::new();
     let guide = std::fs::read_to_string(workspace().join("console/docs/operator-guide.md")).unwrap();

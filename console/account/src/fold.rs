@@ -95,6 +95,9 @@ impl Fold {
                 self.note_error(error_m);
             }
             EventKind::TetherAlarmRaised { alarm: TetherAlarm::Snag { .. }, .. } => self.snag(true),
+            EventKind::TetherAlarmRaised { alarm: TetherAlarm::Broken { .. }, .. } => {
+                self.tethered.iter_mut().for_each(|tethered| tethered.tear(event.t_s));
+            }
             EventKind::TetherAlarmCleared { alarm: TetherAlarm::Snag { .. } } => self.snag(false),
             EventKind::TetherTruth { length_m, wrap_max_rad, wrap_total_rad, detour_m, lies } => {
                 if let Some(tethered) = &mut self.tethered {

@@ -305,6 +305,9 @@ pub struct Tether {
     /// Number of times that the robot truly drove over its own tether; absent for a tether that is always taut.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub over_own: Option<u64>,
+    /// Mission time at which the mission found the tether broken, seconds; absent for a whole tether.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub broken_at_s: Option<f64>,
 }
 
 /// Response times of the planners.

@@ -20,6 +20,7 @@ pub(crate) struct Tethered {
     snagged: bool,
     over_own: Option<u64>,
     is_over_own: bool,
+    broken_at_s: Option<f64>,
 }
 
 impl Tethered {
@@ -33,6 +34,7 @@ impl Tethered {
             snagged: false,
             over_own: None,
             is_over_own: false,
+            broken_at_s: None,
         }
     }
 
@@ -52,6 +54,7 @@ impl Tethered {
             snags: 0,
             snagged: false,
             over_own: None,
+            broken_at_s: None,
         });
     }
 
@@ -68,12 +71,17 @@ impl Tethered {
         self.snagged = snagged;
     }
 
+    /// Records that the mission found the cable broken, at a mission time, seconds.
+    pub(crate) fn tear(&mut self, t_s: f64) {
+        self.broken_at_s.get_or_insert(t_s);
+    }
+
     /// The figures. The cable is entangled if it holds up the mission, or remains out although the robot is back.
     pub(crate) fn tether(&self, robot: Option<Point>, outcome: Option<Outcome>) -> Option<Tether> {
         let is_back = robot.is_some_and(|robot| (robot - self.anchor).norm() <= BACK_M);
         let entangled = outcome == Some(Outcome::Entangled) || (is_back && self.detour_m > LEFT_M);
-        let (snags, snagged, over_own) = (self.snags, self.snagged, self.over_own);
-        self.known.map(|known| Tether { entangled, snags, snagged, over_own, ..known })
+        let &Self { snags, snagged, over_own, broken_at_s, .. } = self;
+        self.known.map(|known| Tether { entangled, snags, snagged, over_own, broken_at_s, ..known })
     }
 }
 
@@ -110,5 +118,9 @@ mod tests {
             tethered.cross(is_over_own);
         }
         assert_eq!(tethered.tether(None, None).unwrap().over_own, Some(2));
+        for t_s in [7.0, 9.0] {
+            tethered.tear(t_s);
+        }
+        assert_eq!(tethered.tether(None, None).unwrap().broken_at_s, Some(7.0));
     }
 }

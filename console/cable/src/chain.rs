@@ -16,6 +16,8 @@ const MOST_LINKS: f64 = 1000.0;
 const FARTHEST_LINKS: f64 = 0.5;
 /// Most steps of one move.
 const MOST_STEPS: f64 = 16.0;
+/// Length of the link at a reel that has taken everything up, metres.
+const LEAST_M: f64 = 1e-6;
 /// Length of the cable that is stretched when the reel is empty, metres, above which the robot is held back.
 const STRETCHED_M: f64 = 0.02;
 
@@ -50,7 +52,7 @@ impl Chain {
             nodes = vec![robot, anchor];
         }
         let rest_m = nodes.windows(2).map(|pair| (pair[1] - pair[0]).norm()).collect();
-        let links = Links { nodes, rest_m };
+        let links = Links { nodes, rest_m, torn: None };
         Some(Self { law, link_m, links, found: Solution::default() })
     }
 
@@ -72,6 +74,7 @@ impl Chain {
     /// Moves the robot by a short way.
     fn advance(&mut self, robot: Vector, surfaces: &Surfaces, passed_s: f64) {
         let Law { pull_n, pay_out_n, speed_m_per_s, length_m, .. } = self.law;
+        let (pull_n, pay_out_n) = if self.is_wound_up() { (0.0, 0.0) } else { (pull_n, pay_out_n) };
         let feed = Feed {
             in_n: pull_n,
             out_n: pull_n.max(pay_out_n),
@@ -91,11 +94,12 @@ impl Chain {
         self.feed(self.found.feed_m);
     }
 
-    /// Lengthens or shortens the link at the reel; adds or removes a node beside the anchor.
+    /// Lengthens or shortens the link at the reel; adds or removes a node beside the anchor. A loose end stays there when it
+    /// has come to the reel.
     fn feed(&mut self, feed_m: f64) {
-        let Links { nodes, rest_m } = &mut self.links;
+        let Links { nodes, rest_m, torn } = &mut self.links;
         let last = rest_m.len() - 1;
-        rest_m[last] = (rest_m[last] + feed_m).max(1e-6);
+        rest_m[last] = (rest_m[last] + feed_m).max(LEAST_M);
         let anchor = nodes[last + 1];
         if rest_m[last] > 1.5 * self.link_m {
             let share = self.link_m / rest_m[last];
@@ -107,6 +111,10 @@ impl Chain {
             let moved = self.found.moved[last];
             self.found.moved.insert(last + 1, moved);
         } else if last > 0 && rest_m[last] < 0.5 * self.link_m {
+            if *torn == Some(last - 1) {
+                (nodes[last], rest_m[last]) = (anchor, LEAST_M);
+                return;
+            }
             let joined_m = rest_m[last - 1] + rest_m[last];
             rest_m.pop();
             rest_m[last - 1] = joined_m;
@@ -115,9 +123,14 @@ impl Chain {
         }
     }
 
-    /// Length of cable off the reel, metres.
+    /// Length of cable off the reel, metres; of a torn cable, up to its loose end.
     pub fn paid_out_m(&self) -> f64 {
-        self.links.rest_m.iter().sum()
+        self.links.rest_m[self.links.torn.map_or(0, |torn| torn + 1)..].iter().sum()
+    }
+
+    /// The largest pull in the cable, newtons.
+    pub fn pull_max_n(&self) -> f64 {
+        self.found.pull_n.iter().copied().fold(0.0, f64::max)
     }
 
     /// Pull of the cable at the robot, newtons: next to nothing if the cable is slack there.
@@ -135,13 +148,14 @@ impl Chain {
         let links = self.links.nodes.windows(2).zip(&self.links.rest_m);
         let stretched_m: f64 =
             links.map(|(pair, rest_m)| ((pair[1] - pair[0]).norm() - rest_m).max(0.0)).sum();
-        self.paid_out_m() >= self.law.length_m - 1e-6 && stretched_m > STRETCHED_M
+        !self.is_torn() && self.paid_out_m() >= self.law.length_m - 1e-6 && stretched_m > STRETCHED_M
     }
 
-    /// The line of the cable from the anchor to the robot, tank frame, without points that lie within `by_m` metres of the
-    /// line without them.
+    /// The line of the cable from the anchor or, if it is torn, from the loose end to the robot, tank frame, without points
+    /// that lie within `by_m` metres of the line without them.
     pub fn line(&self, by_m: f64) -> Vec<Point> {
-        let nodes: Vec<Point> = self.links.nodes.iter().rev().copied().collect();
+        let last = self.links.torn.unwrap_or(self.links.nodes.len() - 1);
+        let nodes: Vec<Point> = self.links.nodes[..=last].iter().rev().copied().collect();
         let mut kept = vec![nodes[0]];
         thin(&nodes, by_m, &mut kept);
         kept
@@ -152,14 +166,34 @@ impl Chain {
         self.law.pull_n = 0.0;
     }
 
+    /// Tears the cable where it is pulled most. Then each of the two pieces has a loose end, and the reel takes its piece up.
+    /// A cable with fewer than three links off the reel stays whole.
+    pub fn tear(&mut self) {
+        let last = self.links.rest_m.len() - 1;
+        let pull_n = |link: usize| self.found.pull_n.get(link).copied().unwrap_or_default();
+        let most = (1..last).max_by(|a, b| pull_n(*a).total_cmp(&pull_n(*b)));
+        self.links.torn = self.links.torn.or(most);
+    }
+
+    /// Whether the cable is torn.
+    pub fn is_torn(&self) -> bool {
+        self.links.torn.is_some()
+    }
+
+    /// Whether the reel has taken up a torn cable to its loose end.
+    fn is_wound_up(&self) -> bool {
+        let last = self.links.rest_m.len() - 1;
+        self.links.torn.is_some_and(|torn| torn + 1 == last) && self.links.rest_m[last] <= LEAST_M
+    }
+
     /// Whether the hull, a disc around the robot, stands on a part of the cable that does not lead straight away from it.
     pub fn is_under(&self, hull_m: f64) -> bool {
-        let Links { nodes, rest_m } = &self.links;
+        let Links { nodes, rest_m, torn } = &self.links;
         let mut along_m = 0.0;
-        nodes.windows(2).zip(rest_m).any(|(pair, link_m)| {
+        nodes.windows(2).zip(rest_m).enumerate().any(|(link, (pair, link_m))| {
             along_m += link_m;
             let aside = polyline::nearest_on_segment(pair[0], pair[1], nodes[0]) - nodes[0];
-            along_m > 3.0 * hull_m && aside.norm() < hull_m
+            *torn != Some(link) && along_m > 3.0 * hull_m && aside.norm() < hull_m
         })
     }
 }

@@ -40,6 +40,8 @@ pub(crate) struct Links {
     pub nodes: Vec<Point>,
     /// Length of each link, metres; one less than nodes.
     pub rest_m: Vec<f64>,
+    /// The link where the cable is torn: it bears nothing.
+    pub torn: Option<usize>,
 }
 
 /// The solution of a step; also where the next step begins to search.
@@ -112,6 +114,9 @@ impl Step<'_> {
 
     /// Pull of a link of a given drawn length, its growth per metre, and the energy.
     fn strain(&self, link: usize, length_m: f64) -> [f64; 3] {
+        if self.links.torn == Some(link) {
+            return [0.0; 3];
+        }
         let rest_m = self.links.rest_m[link];
         let stiffness = self.stiffness(rest_m);
         let too_long_m = length_m - rest_m;

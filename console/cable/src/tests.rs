@@ -121,6 +121,51 @@ fn without_friction_the_reel_keeps_the_cable_taut() {
     }
 }
 
+/// The length off the reel, and the pulls at robot and reel, of a cable 8 m long that tears after the robot has driven on to
+/// `to_m`, and then drives 4 m farther out; when it has torn, and at the end.
+fn torn(to_m: f64, law: Law) -> [[f64; 3]; 2] {
+    let floor = surfaces(&[]);
+    let mut chain = straight(8.0, law);
+    let at = |x| Point::new(x, 0.0);
+    drive(&mut chain, &floor, &[at(8.0), at(to_m)], |_| ());
+    chain.tear();
+    assert!(chain.is_torn());
+    let figures = |chain: &Chain| [chain.paid_out_m(), chain.pull_at_robot_n(), chain.pull_at_reel_n()];
+    let first = figures(&chain);
+    drive(&mut chain, &floor, &[at(to_m), at(to_m + 4.0)], |chain| {
+        assert!(figures(chain).iter().all(|figure| figure.is_finite() && *figure >= 0.0));
+        let line = chain.line(0.0);
+        assert!(line.len() >= 2 && line.iter().all(|at| at.x.is_finite() && at.y.is_finite()));
+        assert!(!chain.is_at_its_end());
+    });
+    [first, figures(&chain)]
+}
+
+#[test]
+fn the_reel_takes_up_the_loose_end_of_a_torn_cable_and_the_robot_drags_the_rest() {
+    // Driving out, the pull is largest at the robot, which keeps two links.
+    let [first, end] = torn(9.0, law(6.0));
+    assert!((8.7..9.0).contains(&first[0]), "{first:?}");
+    assert!(end[0] < 1e-3 && end[1] < 0.2 * 0.3 && end[2] < 1e-6, "{end:?}");
+    // Driving back, the pull is largest at the reel: almost everything lies on the floor, and the robot drags it.
+    let [first, end] = torn(7.0, law(6.0));
+    assert!(first[0] < 0.3, "{first:?}");
+    assert!(end[0] < 1e-3 && end[2] < 1e-6 && (end[1] / (0.3 * 7.0) - 1.0).abs() < 0.1, "{end:?}");
+    // A reel that takes nothing up leaves its piece where it is.
+    let [_, end] = torn(9.0, law(0.0));
+    assert!(end[0] > 8.5 && end[1] < 0.2 * 0.3 && end[2] < 0.6, "{end:?}");
+    // Without friction, everything is loose.
+    let [_, end] = torn(9.0, Law { floor_n_per_m: 0.0, ..law(6.0) });
+    assert!(end[0] < 1e-3 && end[1] < 0.05 && end[2] < 1e-6, "{end:?}");
+}
+
+#[test]
+fn a_cable_that_is_hardly_off_the_reel_cannot_tear() {
+    let mut chain = straight(0.15, law(6.0));
+    chain.tear();
+    assert!(!chain.is_torn());
+}
+
 #[test]
 fn absurd_properties_give_finite_figures() {
     let absurd = [f64::NAN, f64::INFINITY, -1.0, 0.0, 1e300];

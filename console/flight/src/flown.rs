@@ -46,7 +46,8 @@ impl Forked {
             AeConfig { outages_s: Vec::new(), disturbances, ..ae }
         });
         let robot = RobotConfig { scanner: None, ..scenario.sim.robot.clone() };
-        let physical = scenario.sim.physical.map(|cable| PhysicalCable { fails_at_s: None, ..cable });
+        let physical =
+            scenario.sim.physical.map(|cable| PhysicalCable { fails_at_s: None, breaks_at_s: None, ..cable });
         let config = SimConfig {
             world,
             robot,

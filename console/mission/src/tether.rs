@@ -13,9 +13,11 @@
 mod alarms;
 mod certifying;
 mod driven;
+mod homeward;
 mod payout;
 mod slack;
 mod survey;
+mod torn;
 
 pub use certifying::certify_from_start;
 pub(crate) use certifying::{ends_at_anchor, return_path_ends};
@@ -31,6 +33,7 @@ use payout::{Explained, Payout};
 use planner_api::Plan;
 use slack::Slack;
 use std::sync::Arc;
+use torn::Torn;
 use world::{
     ObstacleMap, Point, Readings, Shape, World,
     tether::{Bearing, Cable, CableObstacles, Certificate, TetherError, capstan_factor},
@@ -59,6 +62,7 @@ pub struct Tether {
     without_home_s: f64,
     payout: Payout,
     slack: Slack,
+    torn: Torn,
     driven: Driven,
     alarms: Alarms,
 }
@@ -82,6 +86,7 @@ impl Tether {
             without_home_s: 0.0,
             payout: Payout::default(),
             slack: Slack::default(),
+            torn: Torn::default(),
             driven: Driven::new(start),
             alarms: Alarms::default(),
         })
@@ -147,12 +152,20 @@ impl Tether {
     /// Records the measured length paid out and the pull, and the time that has passed since the last call, seconds.
     /// `error_m` is the position error with which the cable was laid, metres; `None` while the position is lost.
     pub fn measure(&mut self, readings: &Readings, error_m: Option<f64>, passed_s: f64) {
+        let least_m = error_m.map(|error_m| self.cable.length_m() - error_m);
+        self.torn.take(readings, least_m, self.config.reel.as_ref(), passed_s);
+        if self.torn().is_some() {
+            // What is left of the cable is neither slack nor caught.
+            (self.payout, self.slack) = (Payout::default(), Slack::default());
+            self.payout.take(readings.paid_out_m, None, self.config.limits.reel_length_m, passed_s);
+            self.slack.take(None, pull_n(readings), self.config.reel.as_ref());
+            return;
+        }
         let (length_m, points) = (self.cable.length_m(), self.driven.points().len());
         let pull_ratio = self.pull_needed_n().zip(self.config.reel).map_or(0.0, |(n, reel)| n / reel.pull_n);
         let explained = error_m.map(|error_m| Explained { length_m, error_m, points, pull_ratio });
         let excess_m = explained.and(readings.paid_out_m).map(|out_m| out_m - length_m);
-        let pull_n = readings.robot_pull_n.or(readings.reel_pull_n);
-        let can_be_caught = self.slack.take(excess_m, pull_n, self.config.reel.as_ref());
+        let can_be_caught = self.slack.take(excess_m, pull_n(readings), self.config.reel.as_ref());
         let explained = explained.filter(|_| can_be_caught);
         self.payout.take(readings.paid_out_m, explained, self.config.limits.reel_length_m, passed_s);
     }
@@ -165,6 +178,12 @@ impl Tether {
     /// Whether more cable is out than expected from the map: the cable has caught on something unknown.
     pub fn is_snagged(&self) -> bool {
         self.payout.is_snagged()
+    }
+
+    /// The alarm of a torn cable; `None` for a whole one. A torn cable stays torn for the rest of the mission.
+    pub(crate) fn torn(&self) -> Option<TetherAlarm> {
+        let (paid_out_m, needed_m) = self.torn.found_m()?;
+        Some(TetherAlarm::Broken { paid_out_m, needed_m })
     }
 
     /// The path from the robot to the anchor that frees a caught cable and reels it in. It first goes back along the path
@@ -218,7 +237,7 @@ impl Tether {
     }
 
     /// The alarms of the cable, each with its current value as a share of the limit.
-    fn alarms_with_shares(&self, world: &World) -> [(TetherAlarm, f64); 6] {
+    fn alarms_with_shares(&self, world: &World) -> Vec<(TetherAlarm, f64)> {
         let limits = self.config.limits;
         let contacts = self.cable.contacts();
         let most = contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()));
@@ -227,7 +246,9 @@ impl Tether {
         let (out_m, reel_length_m) = (self.payout.at_least_m(explained_m), limits.reel_length_m);
         let (wrap_rad, sum_rad) = (self.cable.wrap_max_rad(), self.cable.wrap_total_rad());
         let (wrap_limit_rad, sum_limit_rad) = (limits.wrap_max_rad, limits.wrap_total_max_rad);
-        [
+        // Like a snag, a torn cable has no intermediate levels.
+        let torn = self.torn().map(|alarm| (alarm, 2.0));
+        let alarms = [
             (TetherAlarm::Reel { out_m, reel_length_m }, out_m / reel_length_m),
             (TetherAlarm::Wrap { on, wrap_rad, limit_rad: wrap_limit_rad }, wrap_rad / wrap_limit_rad),
             (TetherAlarm::WrapTotal { sum_rad, limit_rad: sum_limit_rad }, sum_rad / sum_limit_rad),
@@ -235,7 +256,8 @@ impl Tether {
             // A snag has no intermediate levels.
             (TetherAlarm::Snag { paid_out_m: out_m, explained_m }, if self.is_snagged() { 2.0 } else { 0.0 }),
             self.slack.alarm(),
-        ]
+        ];
+        torn.into_iter().chain(alarms).collect()
     }
 
     fn contacts(&self, world: &World) -> Vec<TetherContact> {
@@ -313,6 +335,11 @@ impl Tether {
         let names = on.first().map_or_else(String::new, |first| format!(", hooked around {first}"));
         (left_m > LEFT_M).then(|| format!("{left_m:.1} m of tether still out{names}"))
     }
+}
+
+/// The measured pull: at the robot or, without a sensor there, at the reel, newtons.
+fn pull_n(readings: &Readings) -> Option<f64> {
+    readings.robot_pull_n.or(readings.reel_pull_n)
 }
 
 /// The bends of the taut cable between its ends.

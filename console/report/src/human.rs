@@ -294,6 +294,7 @@ fn positioning(positioning: &Positioning) -> Vec<String> {
 
 fn tether(tether: &Tether) -> String {
     let state = match tether {
+        Tether { broken_at_s: Some(_), .. } => "BROKEN",
         Tether { entangled: true, .. } => "ENTANGLED",
         Tether { snagged: true, .. } => "SNAGGED",
         _ => "free",

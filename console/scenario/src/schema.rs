@@ -421,6 +421,9 @@ static FAULTS: &[Key] = &[
     number("excess_range_m", "m", above(0.0).up_to(1000.0)).or_none("the station is silent"),
 ];
 
+/// A pull of a cable, newtons. Below it, a figure with one decimal would say nothing.
+const PULL: Span = at_least(0.1).up_to(100_000.0);
+
 static TETHER: &[Key] = &[
     point("anchor_m").or_none("start of the robot"),
     number("reel_length_m", "m", LENGTH),
@@ -428,15 +431,17 @@ static TETHER: &[Key] = &[
     number("wrap_total_max_deg", "deg", above(0.0).up_to(36_000.0)).or(720.0),
     number("friction", "", at_least(0.0).up_to(2.0)).or(0.3),
     key("allow_uncertified", "", Kind::Flag).or_flag(false),
-    number("reel_pull_n", "N", above(0.0).up_to(100_000.0)).or_none("the pull is not checked"),
+    number("reel_pull_n", "N", PULL).or_none("the pull is not checked"),
     number("mass_kg_per_m", "kg/m", above(0.0).up_to(20.0)).or(0.1),
     number("floor_friction", "", at_least(0.0).up_to(2.0)).or(0.3),
     number("reel_speed_m_per_s", "m/s", above(0.0).up_to(10.0)).or_none("as fast as the robot"),
     number("reel_pay_out_n", "N", at_least(0.0).up_to(100_000.0)).or(0.5),
-    number("robot_pull_n", "N", above(0.0).up_to(100_000.0)).or_none("not compared"),
+    number("robot_pull_n", "N", PULL).or_none("not compared"),
     number("pull_ratio_max", "", above(0.0).up_to(1.0)).or(0.8),
     word("model", &["taut", "physical"]).or_word("taut"),
     number("reel_fails_at_s", "s", at_least(0.0)).or_none("never"),
+    number("breaks_at_s", "s", at_least(0.0)).or_none("never"),
+    number("breaks_at_n", "N", PULL).or_none("never"),
 ];
 
 static STATIONS: &[Key] = &[key("name", "", Kind::Text), point("at_m")];

@@ -748,7 +748,8 @@ fn a_reel_is_read_with_its_defaults_and_wrong_keys_are_named() {
     assert_eq!((reel.mass_kg_per_m, reel.robot_pull_n, reel.pull_ratio_max), (0.3, Some(40.0), 0.7));
     for (keys, key, why) in [
         ("mass_kg_per_m = 0.2", "tether.reel_pull_n", "tether.mass_kg_per_m has no effect"),
-        ("reel_pull_n = 0.0", "tether.reel_pull_n", "greater than 0 N"),
+        ("reel_pull_n = 0.0", "tether.reel_pull_n", "at least 0.1 N"),
+        ("reel_pull_n = 6.0\nrobot_pull_n = 1e-9", "tether.robot_pull_n", "at least 0.1 N"),
         ("reel_pull_n = nan", "tether.reel_pull_n", "finite"),
         ("reel_pull_n = 6.0\nmass_kg_per_m = 1e9", "tether.mass_kg_per_m", "at most 20 kg/m"),
         ("reel_pull_n = 6.0\nfloor_friction = -0.1", "tether.floor_friction", "at least 0"),
@@ -765,16 +766,25 @@ fn a_reel_is_read_with_its_defaults_and_wrong_keys_are_named() {
 fn a_physical_cable_needs_a_reel_and_only_it_can_have_a_reel_that_fails() {
     let with = |keys: &str| format!("{SMALL}[tether]\nreel_length_m = 30.0\nreel_pull_n = 6.0\n{keys}");
     assert_eq!(read(&with("")).sim.physical, None);
-    let scenario = read(&with("model = \"physical\"\nreel_fails_at_s = 9.0\nfriction = 0.2"));
+    let scenario = read(&with(
+        "model = \"physical\"\nreel_fails_at_s = 9.0\nbreaks_at_s = 12.0\nbreaks_at_n = 400.0\nfriction = 0.2",
+    ));
     let physical = scenario.sim.physical.unwrap();
     let law = physical.law;
     assert_eq!((law.pull_n, law.pay_out_n, law.friction, law.length_m), (6.0, 0.5, 0.2, 30.0));
     assert!((law.floor_n_per_m - 0.3 * 0.1 * 9.80665).abs() < 1e-12);
-    assert_eq!(physical.fails_at_s, Some(9.0));
+    let faults = (physical.fails_at_s, physical.breaks_at_s, physical.breaks_at_n);
+    assert_eq!(faults, (Some(9.0), Some(12.0), Some(400.0)));
     let weightless = format!("{SMALL}[tether]\nreel_length_m = 30.0\nmodel = \"physical\"");
     for (text, key, why) in [
         (weightless, "tether.reel_pull_n", "a physical cable needs it"),
         (with("reel_fails_at_s = 9.0"), "tether.reel_fails_at_s", "taut tether"),
+        (with("breaks_at_s = 9.0"), "tether.breaks_at_s", "taut tether"),
+        (with("breaks_at_n = 9.0"), "tether.breaks_at_n", "taut tether"),
+        (with("model = \"physical\"\nbreaks_at_s = -1.0"), "tether.breaks_at_s", "at least 0"),
+        (with("model = \"physical\"\nbreaks_at_s = nan"), "tether.breaks_at_s", "finite"),
+        (with("model = \"physical\"\nbreaks_at_n = 0.0"), "tether.breaks_at_n", "at least 0.1 N"),
+        (with("model = \"physical\"\nbreaks_at_n = inf"), "tether.breaks_at_n", "finite"),
         (with("model = \"elastic\""), "tether.model", "physical"),
     ] {
         let text = errors(&text).render();

@@ -48,6 +48,9 @@ const REEL: [&str; 7] = [
     "pull_ratio_max",
 ];
 
+/// The keys of the faults of a physical cable and its reel.
+const FAULTS: [&str; 3] = ["reel_fails_at_s", "breaks_at_s", "breaks_at_n"];
+
 /// Reads the reel. Complains about keys that would have no effect because `reel_pull_n` is missing.
 fn reel(section: &Section<'_>) -> Option<Reel> {
     if let Some(key) = REEL.iter().find(|key| section.has(key)) {
@@ -74,7 +77,7 @@ pub(crate) fn physical(
     v_max_m_per_s: f64,
 ) -> Option<PhysicalCable> {
     if section.word("model") != Some("physical") {
-        section.refuse(&["reel_fails_at_s"], "a taut tether; add model = \"physical\"");
+        section.refuse(&FAULTS, "a taut tether; add model = \"physical\"");
         return None;
     }
     section.require(REEL[0], "add the pull of the reel, in N; a physical cable needs it");
@@ -94,7 +97,8 @@ pub(crate) fn physical(
         speed_m_per_s,
         length_m: tether.limits.reel_length_m,
     };
-    Some(PhysicalCable { law, fails_at_s: section.number("reel_fails_at_s") })
+    let [fails_at_s, breaks_at_s, breaks_at_n] = FAULTS.map(|key| section.number(key));
+    Some(PhysicalCable { law, fails_at_s, breaks_at_s, breaks_at_n })
 }
 
 /// Complains about a reel that is slower than the robot: the certificate assumes that the reel takes up all slack at

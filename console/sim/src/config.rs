@@ -268,4 +268,10 @@ pub struct PhysicalCable {
     /// When the reel stops taking up cable, mission time, seconds; `None` if it never does.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fails_at_s: Option<f64>,
+    /// When the cable tears, mission time, seconds; `None` if it never does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub breaks_at_s: Option<f64>,
+    /// The pull beyond which the cable tears, newtons; `None` if it bears any pull.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub breaks_at_n: Option<f64>,
 }

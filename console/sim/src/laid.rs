@@ -15,16 +15,16 @@ const DRAWN_S: f64 = 1.0;
 pub(crate) struct Laid {
     chain: Chain,
     surfaces: Arc<Surfaces>,
-    fails_at_s: Option<f64>,
+    physical: PhysicalCable,
     tick_s: f64,
 }
 
 impl Laid {
     /// Lays a cable along a taut one; `None` if the cable of the scenario is taut.
     pub(crate) fn along(taut: Option<&Cable>, config: &SimConfig) -> Option<Self> {
-        let PhysicalCable { law, fails_at_s } = config.physical?;
-        let chain = Chain::along(&taut?.taut_line(), law)?;
-        Some(Self { chain, surfaces: surfaces(config), fails_at_s, tick_s: config.tick_s })
+        let physical = config.physical?;
+        let chain = Chain::along(&taut?.taut_line(), physical.law)?;
+        Some(Self { chain, surfaces: surfaces(config), physical, tick_s: config.tick_s })
     }
 
     /// Notes that obstacles have moved.
@@ -35,8 +35,13 @@ impl Laid {
     /// The cable after the robot has moved in a tick.
     pub(crate) fn moved(&self, robot: Point, tick: u64) -> Self {
         let mut moved = self.clone();
-        if self.fails_at_s.is_some_and(|fails_at_s| tick as f64 * self.tick_s >= fails_at_s) {
+        let PhysicalCable { fails_at_s, breaks_at_s, breaks_at_n, .. } = self.physical;
+        let is_past = |at_s: Option<f64>| at_s.is_some_and(|at_s| tick as f64 * self.tick_s >= at_s);
+        if is_past(fails_at_s) {
             moved.chain.stop_reel();
+        }
+        if is_past(breaks_at_s) || breaks_at_n.is_some_and(|most_n| self.chain.pull_max_n() > most_n) {
+            moved.chain.tear();
         }
         moved.chain.step(robot, &self.surfaces, self.tick_s);
         moved
@@ -66,7 +71,12 @@ impl Laid {
     pub(crate) fn lies(&self, hull_m: f64, tick: u64) -> CableLies {
         let every = (DRAWN_S / self.tick_s).round().max(1.0) as u64;
         let line = if tick.is_multiple_of(every) { self.chain.line(DRAWN_M) } else { Vec::new() };
-        CableLies { line, under_hull: self.chain.is_under(hull_m), reel_pull_n: self.reel_pull_n() }
+        CableLies {
+            line,
+            under_hull: self.chain.is_under(hull_m),
+            reel_pull_n: self.reel_pull_n(),
+            torn: self.chain.is_torn(),
+        }
     }
 }
 

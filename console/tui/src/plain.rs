@@ -149,8 +149,8 @@ fn tether(model: &Model) -> Option<String> {
     let wrap = tether.largest().map_or_else(String::new, |contact| {
         format!(", largest wrap {:.0}° on {}", contact.wrap_rad.abs().to_degrees(), contact.on)
     });
-    let snag = if tether.is_snagged { " SNAGGED" } else { "" };
-    Some(format!("Tether{snag}: {:.1} of {reel_m:.1} m out{wrap}.", tether.length_m))
+    let trouble = tether.trouble();
+    Some(format!("Tether{trouble}: {:.1} of {reel_m:.1} m out{wrap}.", tether.length_m))
 }
 
 /// Whether an action changes only a picture or opens a list; sentences have neither.

@@ -34,11 +34,15 @@ pub struct TetherTruth {
 /// How a cable with weight lies on the floor.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CableLies {
-    /// The line of the cable from the anchor to the robot, tank frame; empty in most ticks, to save space.
+    /// The line of the cable from the anchor or, if it is torn, from the loose end to the robot, tank frame; empty in most
+    /// ticks, to save space.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub line: Vec<Point>,
     /// Whether the hull is over a part of the cable that does not lead straight away from it.
     pub under_hull: bool,
     /// Pull at the reel, newtons.
     pub reel_pull_n: f64,
+    /// Whether the cable is torn.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub torn: bool,
 }

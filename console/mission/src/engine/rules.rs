@@ -74,7 +74,7 @@ impl Rules {
             .update(seen)
             .or_else(|| ZoneRule::update(seen))
             .or_else(|| seen.task.is_done(seen.here).then_some(Verdict::Done))
-            .or_else(|| seen.reached.map(|alarm| tether.update(seen, alarm)))
+            .or_else(|| tether.update(seen))
             .or_else(|| LatePlannerRule::update(&seen.planner))
             .or_else(|| ZoneRule::update_planner(seen))
             .or_else(|| if seen.planner.is_waited_for { None } else { stuck.update(seen) })
@@ -83,14 +83,14 @@ impl Rules {
     /// The rules for a robot that drives back: they may hold it, but they neither ask planners nor end the mission
     /// unfinished.
     fn update_return(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
-        let Self { lost_position, stuck, .. } = self;
+        let Self { lost_position, tether, stuck, .. } = self;
         let hold = |by| Verdict::Hold(Hold { by, resumes: Resumes::Never });
         let by_tether = |alarm: &TetherAlarm| hold(HoldReason::Tether { message: alarm.to_string() });
         lost_position
             .update(seen)
             .or_else(|| ZoneRule::update(seen))
             .or_else(|| seen.is_back.then_some(Verdict::Back))
-            .or_else(|| seen.reached.map(by_tether))
+            .or_else(|| tether.reached(seen).map(by_tether))
             .or_else(|| stuck.update_return(seen))
     }
 

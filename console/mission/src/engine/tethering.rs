@@ -8,7 +8,7 @@ use crate::{
 use world::{Point, Readings};
 
 impl Known {
-    /// Moves the cable along with the robot; returns the limit reached in this tick, if any.
+    /// Moves the cable along with the robot; returns the limit reached in this tick, or the break of a torn cable.
     pub(super) fn drag_tether(
         &mut self,
         map_changed: bool,
@@ -35,6 +35,7 @@ impl Known {
             EventKind::TetherAlarmRaised { alarm, reached: true } => Some(alarm.clone()),
             _ => None,
         });
+        let reached = reached.or_else(|| tether.torn());
         happened.extend(events);
         reached
     }
@@ -55,11 +56,11 @@ impl Known {
         }
     }
 
-    /// The return path along the cable that leaves the most room; `None` at the anchor, or if there is no return path.
+    /// The way home along the cable that leaves the most room; `None` at the anchor, or if there is no return path.
     pub(super) fn way_to_anchor(&self) -> Option<Vec<Point>> {
         let (here, tether) = (self.locator.position(), self.tether.as_ref()?);
         let is_out = self.task_ends_at_anchor() && (here - tether.anchor()).norm() > HOME_M;
-        if is_out { self.widest(|room_m| tether.return_path(self.chart.world(), room_m)) } else { None }
+        if is_out { self.widest(|room_m| tether.way_home(self.chart.world(), room_m)) } else { None }
     }
 
     /// The path that frees a caught cable and reels it in, with the most room, or the path that makes a slack cable taut;

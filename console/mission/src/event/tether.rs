@@ -71,6 +71,13 @@ pub enum TetherAlarm {
         /// Expected cable length, metres.
         explained_m: f64,
     },
+    /// The cable is torn: the reel has taken up cable that must be out, and nothing pulls at one of its ends.
+    Broken {
+        /// Length off the reel, metres.
+        paid_out_m: f64,
+        /// Length that must be out if the cable leads to the robot, metres.
+        needed_m: f64,
+    },
     /// The hull does not fit through the return path along the cable.
     NoReturnPath,
     /// The robot has left its plan by crossing a cut, so a new plan is needed.
@@ -98,6 +105,7 @@ impl TetherAlarm {
             Self::NoReturnPath => "return path",
             Self::Strayed => "stray",
             Self::Slack { .. } => "slack",
+            Self::Broken { .. } => "broken",
         }
     }
 }
@@ -124,6 +132,11 @@ impl fmt::Display for TetherAlarm {
             Self::Slack { slack_m, pull_n } => write!(
                 f,
                 "reel does not take the tether up: {slack_m:.1} m slack behind the robot, pull {pull_n:.1} N"
+            ),
+            Self::Broken { paid_out_m, needed_m } => write!(
+                f,
+                "tether broken: {paid_out_m:.1} m are off the reel, but the robot is {needed_m:.1} m of tether away, and \
+                 nothing pulls"
             ),
             Self::Strayed => f.write_str("robot crossed a cut of its plan; replanning"),
             Self::NoReturnPath => f.write_str("no return path: hull does not fit"),

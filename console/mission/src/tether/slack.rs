@@ -47,9 +47,7 @@ impl Slack {
     /// Processes the cable out beyond the expected length, metres, and the pull, newtons. Returns whether the cable pulls,
     /// or its pull is not measured: only then can it be caught.
     pub(super) fn take(&mut self, excess_m: Option<f64>, pull_n: Option<f64>, reel: Option<&Reel>) -> bool {
-        let little_n = reel.map_or(LITTLE_N, |reel| {
-            (LITTLE * reel.pull_n).max((LOOP_M + self.loose_m) * reel.drag(0.0).floor_n_per_m)
-        });
+        let little_n = little_n(reel, LOOP_M + self.loose_m);
         let Some(pull_n) = pull_n.filter(|pull_n| pull_n.is_finite()) else {
             *self = Self::default();
             return true;
@@ -77,6 +75,11 @@ impl Slack {
     pub(super) fn measured(&self) -> Option<MeasuredPull> {
         self.pull_n.map(|pull_n| MeasuredPull { pull_n, slack_m: self.loose_m })
     }
+}
+
+/// Pull up to which a cable counts as slack, newtons, if `dragged_m` metres of it may rub on the floor.
+pub(super) fn little_n(reel: Option<&Reel>, dragged_m: f64) -> f64 {
+    reel.map_or(LITTLE_N, |reel| (LITTLE * reel.pull_n).max(dragged_m * reel.drag(0.0).floor_n_per_m))
 }
 
 #[cfg(test)]

@@ -1,6 +1,8 @@
 use super::*;
 use crate::config::{Mover, Track};
-use crate::{AeConfig, ChannelFault, Clocks, Disturbances, NoiseModel, RobotConfig, TimingErrors};
+use crate::{
+    AeConfig, ChannelFault, Clocks, Disturbances, NoiseModel, PhysicalCable, RobotConfig, TimingErrors,
+};
 use proptest::prelude::*;
 use world::{
     Amphibious, Boundary, Medium, Obstacle, ObstacleId, Point, PressureSensor, Scanner, Shape, Station,
@@ -407,6 +409,10 @@ fn at_the_end_of_the_reel_a_robot_pulls_in_vain_but_can_turn_and_come_back() {
 
 /// A robot on a cable with weight, which drives out for 10 s and back for 8 s; the readings and how the cable lay.
 fn out_and_back(pull_n: f64, fails_at_s: Option<f64>) -> Vec<(Readings, world::CableLies)> {
+    driven_out_and_back(PhysicalCable { fails_at_s, ..on_reel(pull_n) })
+}
+
+fn on_reel(pull_n: f64) -> PhysicalCable {
     let law = crate::CableLaw {
         floor_n_per_m: 0.3,
         friction: 0.3,
@@ -415,7 +421,11 @@ fn out_and_back(pull_n: f64, fails_at_s: Option<f64>) -> Vec<(Readings, world::C
         speed_m_per_s: 1.0,
         length_m: 20.0,
     };
-    let physical = Some(crate::PhysicalCable { law, fails_at_s });
+    PhysicalCable { law, fails_at_s: None, breaks_at_s: None, breaks_at_n: None }
+}
+
+fn driven_out_and_back(physical: PhysicalCable) -> Vec<(Readings, world::CableLies)> {
+    let physical = Some(physical);
     let mut sim = Simulator::new(SimConfig { physical, ..tethered(20.0).config }, 1);
     let drives = (0..180).map(|tick| if tick < 100 { 0.5 } else { -0.5 });
     let tick = |v_m_per_s| {
@@ -442,6 +452,23 @@ fn a_cable_with_weight_is_slack_behind_a_robot_whose_reel_has_stopped() {
     assert!(left[179].1.under_hull, "the robot is over its own cable");
     assert!(left.iter().filter(|(_, lies)| !lies.line.is_empty()).count() == 18, "one line a second");
     assert_eq!(left, out_and_back(6.0, Some(8.0)), "the same again");
+}
+
+#[test]
+fn a_cable_that_tears_leaves_the_readings_of_a_loose_end() {
+    let whole = out_and_back(6.0, None);
+    for torn in [
+        driven_out_and_back(PhysicalCable { breaks_at_s: Some(5.0), ..on_reel(6.0) }),
+        driven_out_and_back(PhysicalCable { breaks_at_n: Some(6.5), ..on_reel(6.0) }),
+    ] {
+        let first = torn.iter().position(|(_, lies)| lies.torn).unwrap();
+        assert!((20..=51).contains(&first), "{first}");
+        assert_eq!(torn[..first], whole[..first], "whole until it tears");
+        let (readings, lies) = &torn[first + 40];
+        assert!(readings.paid_out_m.unwrap() < 0.01 && readings.reel_pull_n.unwrap() < 0.01, "{readings:?}");
+        assert!(readings.robot_pull_n.unwrap() < 0.1 && lies.torn, "{readings:?}");
+    }
+    assert!(!whole.last().unwrap().1.torn);
 }
 
 #[test]

@@ -15,6 +15,7 @@ pub(super) fn name(word: &str) -> String {
         "return path" => "return path BLOCKED".into(),
         "stray" => "robot crossed a cut of its plan".into(),
         "slack" => "tether SLACK".into(),
+        "broken" => "tether BROKEN".into(),
         "reel pull" => "tether: reel too weak".into(),
         "robot pull" => "tether pulls robot too hard".into(),
         other => format!("tether: {other}"),
@@ -83,6 +84,7 @@ pub(super) fn guide(word: &str) -> Guide {
                 ]
             },
         },
+        "broken" => broken(),
         "reel pull" => Guide {
             cause: "Taking up the tether from here needs more pull than the reel has.",
             holds: "",
@@ -115,6 +117,26 @@ pub(super) fn guide(word: &str) -> Guide {
             holds: "",
             effect: "The mission is replanned automatically.",
             remedies: const { &[wait("Wait for the new plan.").when(When::Moving), STAY, RESUME, END] },
+        },
+    }
+}
+
+fn broken() -> Guide {
+    Guide {
+        cause: "The reel has taken up tether that must be out, and nothing pulls: the tether is torn.",
+        holds: "The robot is held at once.",
+        effect: "A loose end lies on the floor. A robot that gets power and orders by its tether cannot move.",
+        remedies: const {
+            &[
+                run("Stay held (HOLD), and fetch robot and tether by hand.", ActionId::Hold),
+                run(
+                    "Resume, if the robot has power and a link without its tether. Asks first.",
+                    ActionId::Resume,
+                )
+                .when(When::Held),
+                SHOW,
+                END,
+            ]
         },
     }
 }

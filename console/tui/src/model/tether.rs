@@ -35,6 +35,9 @@ pub struct Tether {
     pub return_length_m: Option<f64>,
     /// Whether more is paid out than the map explains; the geometry of the cable is then unknown.
     pub is_snagged: bool,
+    /// Whether the cable is torn: it does not lead to the robot any more.
+    #[serde(default)]
+    pub is_broken: bool,
     /// The cable from the anchor to the robot.
     pub line: Vec<Point>,
     /// Whether the current plan, or the plan last refused, is certified; `None` without such a plan.
@@ -63,6 +66,15 @@ pub struct Tether {
 }
 
 impl Tether {
+    /// The state of a cable that is torn or snagged, in capitals after a space; else empty.
+    pub fn trouble(&self) -> &'static str {
+        match self {
+            Self { is_broken: true, .. } => " BROKEN",
+            Self { is_snagged: true, .. } => " SNAGGED",
+            _ => "",
+        }
+    }
+
     /// The contact with the largest wrap.
     pub fn largest(&self) -> Option<&TetherContact> {
         self.contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()))

@@ -117,9 +117,9 @@ fn tether(look: &Look) -> Option<String> {
     let wrap = tether.largest().map_or_else(String::new, |contact| {
         format!(", wrap {}° on {}", text::number(contact.wrap_rad.abs().to_degrees(), 0), contact.on)
     });
-    let snag = if tether.is_snagged { " SNAGGED" } else { "" };
+    let trouble = tether.trouble();
     let meter = text::meter(super::tether::out_share(look, tether));
-    Some(format!(" {meter} tether {out} of {reel} m{wrap}{snag}"))
+    Some(format!(" {meter} tether {out} of {reel} m{wrap}{trouble}"))
 }
 
 /// The path driven, and the planner.

@@ -26,6 +26,9 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
 }
 
 fn note(look: &Look) -> &'static str {
+    if look.run.tether.as_ref().is_some_and(|tether| tether.is_broken) {
+        return "BROKEN";
+    }
     match look.run.tether.as_ref().and_then(|tether| tether.certified) {
         Some(true) => "plan certified",
         Some(false) => "NOT certified",
@@ -60,7 +63,7 @@ fn wide_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> 
             let (label, most_n) = felt_where(look);
             lines.push(row(3, label, felt(measured.pull_n, most_n)));
             lines.push((7, pull_trend(tether, most_n, columns)));
-            lines.push(row(4, "slack", slack(measured)));
+            lines.push(row(slack_rank(measured, 4), "slack", slack(measured)));
         }
         None => lines.push((9, vec![(Role::Dim, format!(" {:<12} no sensor", "pull, slack"))])),
     }
@@ -101,7 +104,10 @@ fn narrow_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)
     let pull = pull(look, tether, ("reel needs ", room)).map(|pull| row(4, "", pull));
     let felt = tether.measured.into_iter().flat_map(|measured| {
         let (label, most_n) = felt_where(look);
-        [row(3, &format!("{label} "), felt(measured.pull_n, most_n)), row(5, "slack ", slack(measured))]
+        [
+            row(3, &format!("{label} "), felt(measured.pull_n, most_n)),
+            row(slack_rank(measured, 5), "slack ", slack(measured)),
+        ]
     });
     [
         row(1, "", (out_role(look, tether), metered(out_share(look, tether), out, room))),
@@ -214,6 +220,11 @@ fn felt(pull_n: f64, most_n: Option<f64>) -> (Role, String) {
         }
         None => (Role::Text, format!("{} N (no limit given)", text::number(pull_n, 1))),
     }
+}
+
+/// The rank of the slack among the rows of the pane: near its limit, it is more important than the wrap.
+fn slack_rank(measured: MeasuredPull, calm: u8) -> u8 {
+    if measured.slack_m > text::CLOSE * SLACK_M { 0 } else { calm }
 }
 
 /// The slack beside its limit.

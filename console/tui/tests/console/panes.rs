@@ -335,7 +335,7 @@ fn the_pull_the_slack_and_the_loops_of_a_tether_are_shown() {
         *measured = Some(MeasuredPull { pull_n: 3.4, slack_m: 0.16 });
     }
     let line = [(9.4, 0.0), (4.0, 3.0), (3.0, -3.0)].map(|(x, y)| world::Point::new(x, y)).to_vec();
-    let lies = world::CableLies { line, under_hull: false, reel_pull_n: 3.4 };
+    let lies = world::CableLies { line, under_hull: false, reel_pull_n: 3.4, torn: false };
     let truth = screen.mission.now(EventKind::TetherTruth {
         length_m: 12.0,
         wrap_max_rad: 0.0,
@@ -351,6 +351,34 @@ fn the_pull_the_slack_and_the_loops_of_a_tether_are_shown() {
         for words in ["3.4 N (no limit given)", "0.16 of 0.20 m", "tether, true"] {
             assert!(shown.contains(words), "{size:?} {words}:\n{shown}");
         }
+    }
+    // In a small pane, slack near its limit takes the place of the wrap.
+    let mut cable = screen.mission.cable();
+    if let EventKind::Tethered { measured, .. } = &mut cable.kind {
+        *measured = Some(MeasuredPull { pull_n: 0.0, slack_m: 0.19 });
+    }
+    screen.hear(RunMsg::Events(vec![cable]));
+    screen.send(Msg::Resize { width: 80, height: 24 });
+    let shown = text(&drawn(&screen.model, RICH, (80, 24)));
+    assert!(shown.contains("slack 0.19 of 0.20 m"), "{shown}");
+}
+
+#[test]
+fn a_broken_tether_is_named_by_pane_and_alarm() {
+    let mut screen = Screen::tethered();
+    let alarm = TetherAlarm::Broken { paid_out_m: 0.0, needed_m: 5.2 };
+    let held = HoldReason::Tether { message: alarm.to_string() };
+    let alarmed = screen.mission.now(EventKind::TetherAlarmRaised { alarm, reached: true });
+    let events = vec![screen.mission.cable(), alarmed, screen.mission.held_until(held, Resumes::Never)];
+    screen.hear(RunMsg::Events(events));
+    for size in [(120, 36), (80, 24)] {
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        screen.type_text("3");
+        let shown = text(&drawn(&screen.model, RICH, size));
+        assert!(shown.lines().any(|line| line.contains("Tether") && line.contains("BROKEN")), "{shown}");
+        screen.type_text("4");
+        let shown = text(&drawn(&screen.model, RICH, size));
+        assert!(shown.contains("tether BROKEN") && shown.contains("CRIT"), "{size:?}\n{shown}");
     }
 }
 

@@ -40,7 +40,8 @@ impl Known {
         ahead.all(|at| self.chart.has_room(*at, room_m))
     }
 
-    /// The way on which the tether is only reeled in; if it is caught, it is freed first. No-go zones are avoided without
+    /// The way on which the tether is only reeled in; if it is caught, it is freed first, and if it is slack, it is made taut
+    /// first. No-go zones are avoided without
     /// changing the side on which any obstacle is passed.
     fn way_along(&self, tether: &Tether) -> Result<Vec<Point>, String> {
         let fenced = fenced(self.chart.world());
@@ -53,7 +54,9 @@ impl Known {
                 // Since the robot drove along this path, a no-go zone may have been drawn across it.
                 there.way_out(&fenced, room_m).filter(|way| self.is_free_from_here(way))
             } else {
-                there.return_path(&fenced, room_m)
+                // The same applies to the path on which a slack cable is made taut.
+                let home = there.way_home(&fenced, room_m).filter(|way| self.is_free_from_here(way));
+                home.or_else(|| there.return_path(&fenced, room_m))
             }?;
             Some(self.led_from_here(home))
         };

@@ -1,4 +1,4 @@
-//! Holds the robot when its cable has reached a limit, is caught or is slack.
+//! Holds the robot when its cable has reached a limit, is caught, slack or torn.
 
 use super::seen::{SAME_PLACE_M, Seen, Verdict};
 use crate::{
@@ -22,6 +22,8 @@ pub(in crate::engine) struct TetherRule {
     caught: Option<Caught>,
     /// How long the robot has been held without a return path, seconds.
     waited_s: f64,
+    /// Whether the robot has been stopped because its cable is torn.
+    knows_torn: bool,
 }
 
 /// A place where the cable held the robot.
@@ -34,22 +36,33 @@ struct Caught {
 }
 
 impl TetherRule {
-    /// Processes one tick in which a running robot's cable reached a limit.
-    pub(crate) fn update(&mut self, seen: &Seen<'_>, alarm: &TetherAlarm) -> Verdict {
+    /// The limit that the cable of a moving robot has reached. A torn cable counts once, even if the robot was held when it
+    /// was found torn.
+    pub(crate) fn reached<'a>(&mut self, seen: &Seen<'a>) -> Option<&'a TetherAlarm> {
+        let alarm = seen.reached?;
+        let is_old =
+            matches!(alarm, TetherAlarm::Broken { .. }) && std::mem::replace(&mut self.knows_torn, true);
+        (!is_old).then_some(alarm)
+    }
+
+    /// Processes one tick of a running robot.
+    pub(crate) fn update(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
+        let alarm = self.reached(seen)?;
         self.waited_s = 0.0;
         let message = alarm.to_string();
-        match alarm {
+        Some(match alarm {
             TetherAlarm::Reel { .. } | TetherAlarm::Slack { .. } => {
                 self.stop(seen, message, Outcome::Aborted)
             }
             TetherAlarm::Wrap { .. } | TetherAlarm::WrapTotal { .. } | TetherAlarm::Snag { .. } => {
                 self.stop(seen, message, Outcome::Entangled)
             }
+            TetherAlarm::Broken { .. } => stay(seen, message, Outcome::Aborted),
             // The obstacle that blocks the return path may move away.
             TetherAlarm::NoReturnPath | TetherAlarm::Strayed => {
                 Verdict::Hold(held(message, Resumes::WhenCleared))
             }
-        }
+        })
     }
 
     /// Holds a robot whose cable is at a limit, caught or slack, and requests a new plan that begins with a path that frees
@@ -62,14 +75,11 @@ impl TetherRule {
             .filter(|last| (at - last.at).norm() < SAME_PLACE_M && scanned - last.scanned < WORTH_IT);
         let times = again.map_or(0, |last| last.times);
         self.caught = Some(Caught { times: times + 1, ..again.unwrap_or(Caught { at, scanned, times }) });
-        let attended = seen.config.attended;
-        let resumes = if attended { Resumes::Never } else { Resumes::WhenCleared };
         if seen.can_replan && times < MOST_TIMES_CAUGHT {
+            let resumes = if seen.config.attended { Resumes::Never } else { Resumes::WhenCleared };
             Verdict::HoldAndReplan(held(message, resumes))
-        } else if attended {
-            Verdict::Hold(held(message, resumes))
         } else {
-            Verdict::End(outcome, format!("unattended hold: {message}"))
+            stay(seen, message, outcome)
         }
     }
 
@@ -85,6 +95,15 @@ impl TetherRule {
         }
         self.waited_s += seen.config.tick_s;
         None
+    }
+}
+
+/// Holds a robot until an operator decides; without one, the mission ends.
+fn stay(seen: &Seen<'_>, message: String, outcome: Outcome) -> Verdict {
+    if seen.config.attended {
+        Verdict::Hold(held(message, Resumes::Never))
+    } else {
+        Verdict::End(outcome, format!("unattended hold: {message}"))
     }
 }
 

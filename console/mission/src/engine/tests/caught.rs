@@ -213,3 +213,99 @@ fn a_cable_that_is_slack_for_the_third_time_at_one_place_ends_a_mission_without_
     let flight = scan_with_a_reel_that_stops(&[0.3; 3]);
     assert_eq!((ways_back(&flight).len(), flight.ended()), (2, Some(Outcome::Aborted)));
 }
+
+/// The breaks of the cable that were reported.
+fn breaks(flight: &Flight) -> usize {
+    let is_break = |event: &&Event| {
+        let EventKind::TetherAlarmRaised { alarm, reached: true } = &event.kind else { return false };
+        matches!(alarm, TetherAlarm::Broken { .. })
+    };
+    flight.events.iter().filter(is_break).count()
+}
+
+/// A mission in which the cable tears, and the reel takes the loose end up.
+fn torn(config: MissionConfig) -> Flight {
+    let mut flight = Flight::new(config);
+    flight.reel = cable(Point::new(-3.0, 0.0), &[]);
+    flight.pull_n = Some(3.0);
+    flight.tick(&[Order::Start]);
+    flight.fly(60);
+    flight.pull_n = Some(0.0);
+    flight
+}
+
+/// Goes on with a torn cable that the reel has taken up.
+fn go_on(flight: &mut Flight, ticks: usize) {
+    for _ in 0..ticks {
+        flight.caught_m = -flight.reel.as_ref().unwrap().length_m();
+        flight.tick(&[]);
+    }
+}
+
+#[test]
+fn a_torn_cable_holds_the_robot_once_and_an_operator_may_go_on() {
+    let mut flight = torn(tethered(20.0));
+    go_on(&mut flight, 300);
+    assert_eq!((breaks(&flight), holds(&flight)), (1, 1));
+    assert!(matches!(flight.held_by(), Some(HoldReason::Tether { message }) if message.contains("broken")));
+    flight.tick(&[Order::Resume]);
+    go_on(&mut flight, 300);
+    assert_eq!((breaks(&flight), holds(&flight), flight.ended()), (1, 1, Some(Outcome::Complete)));
+}
+
+#[test]
+fn a_cable_that_tears_while_the_robot_is_held_holds_it_again_when_it_moves() {
+    let mut flight = torn(tethered(20.0));
+    flight.tick(&[Order::Hold]);
+    go_on(&mut flight, 50);
+    assert_eq!((breaks(&flight), flight.held_by()), (1, Some(&HoldReason::Operator)));
+    flight.tick(&[Order::Resume]);
+    go_on(&mut flight, 5);
+    assert!(matches!(flight.held_by(), Some(HoldReason::Tether { message }) if message.contains("broken")));
+}
+
+#[test]
+fn a_torn_cable_ends_a_mission_without_an_operator() {
+    let mut flight = torn(MissionConfig { attended: false, ..tethered(20.0) });
+    go_on(&mut flight, 300);
+    assert_eq!((breaks(&flight), flight.ended()), (1, Some(Outcome::Aborted)));
+    let is_reason = |event: &Event| matches!(&event.kind, EventKind::Ended { reason, .. } if reason.contains("tether broken: 0.0 m"));
+    assert!(flight.events.iter().any(is_reason));
+}
+
+#[test]
+fn a_robot_with_a_slack_cable_drives_back_by_the_place_where_the_cable_last_pulled() {
+    let anchor = covering().start.position;
+    let limits = tether::Limits { reel_length_m: 50.0, wrap_max_rad: 50.0, wrap_total_max_rad: 50.0 };
+    let config = TetherConfig { anchor, limits, friction: 0.3, reel: None, allow_uncertified: false };
+    let mut flight = Flight::new(MissionConfig { tether: Some(config), attended: true, ..covering() });
+    flight.reel = cable(anchor, &[]);
+    flight.tick(&[Order::Start]);
+    let mut stopped: Option<(f64, Point)> = None;
+    while flight.held_by().is_none() {
+        flight.tick(&[]);
+        let taut_m = flight.reel.as_ref().unwrap().length_m();
+        if stopped.is_none() && covered(&flight) >= 0.3 {
+            stopped = Some((taut_m, flight.pose.position));
+        }
+        if let Some((out_m, at)) = &mut stopped {
+            // The cable pulls as long as the robot draws more of it out.
+            if taut_m >= *out_m {
+                (*out_m, *at) = (taut_m, flight.pose.position);
+            }
+            flight.caught_m = *out_m - taut_m;
+        }
+        flight.pull_n = Some(if flight.caught_m > 0.01 { 0.0 } else { 3.0 });
+    }
+    let (_, last_pulled_at) = stopped.unwrap();
+    assert!(matches!(flight.held_by(), Some(HoldReason::Tether { .. })));
+    flight.tick(&[Order::DriveBack]);
+    let way = flight.events.iter().find_map(|event| match &event.kind {
+        EventKind::ReturnBegan { way } => Some(way.path.clone()),
+        _ => None,
+    });
+    let way = way.unwrap();
+    let passes_m = way.iter().map(|at| (at - last_pulled_at).norm()).fold(f64::INFINITY, f64::min);
+    assert!(passes_m < 0.15, "{passes_m} m from the place where the cable last pulled");
+    assert!((way.last().unwrap() - anchor).norm() < 0.3, "{way:?}");
+}

@@ -127,6 +127,10 @@ fn tether_table(tether: &TetherPart) -> Table {
     table.row(vec![name.into(), pull.into(), "".into(), "".into(), "".into(), "".into()]);
     let snags = truth.map_or(0, |truth| truth.snags);
     table.row(vec!["Snags".into(), snags.to_string().into(), "".into(), "".into(), "".into(), "".into()]);
+    if let Some(at_s) = truth.and_then(|truth| truth.broken_at_s) {
+        let name = "Tether found broken";
+        table.row(vec![name.into(), "".into(), clock(at_s).into(), "".into(), "".into(), "".into()]);
+    }
     if let Some(times) = truth.and_then(|truth| truth.over_own) {
         let name = "Times that the robot drove over its own tether";
         table.row(vec![name.into(), "".into(), "".into(), "".into(), "".into(), times.to_string().into()]);

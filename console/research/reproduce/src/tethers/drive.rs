@@ -43,6 +43,9 @@ pub(super) struct Drive {
     /// Whether the cable was taut again after the robot had gone back along its path, without driving over the cable;
     /// `None` if it was not held.
     pub is_freed: Option<bool>,
+    /// How often the robot would have driven onto its own cable on the way home after the hold, and on the taut line; `None` if
+    /// it was not held.
+    pub times_over_home: Option<(usize, usize)>,
     /// How often the cable counted as caught.
     pub snags: usize,
     /// Length of cable beyond the taut line after the return, metres.
@@ -73,6 +76,9 @@ pub(super) fn drive(tank: &Tank, path: &[Point], ratio: f64) -> Drive {
         if !drive.is_held && run.is_raised(|alarm| matches!(alarm, TetherAlarm::Slack { .. })) {
             drive.is_held = true;
             drive.is_freed = Some(run.clone().go_back_until_taut(&way[..=index]));
+            let home = run.rules.way_home(&world, HULL_M).zip(run.rules.return_path(&world, HULL_M));
+            drive.times_over_home =
+                home.map(|(home, on_line)| (run.times_over_on(&home), run.times_over_on(&on_line)));
         }
     }
     let end = way.last().copied().unwrap_or(tank.anchor);
@@ -169,6 +175,18 @@ impl<'a> Run<'a> {
             }
         }
         self.chain.is_under(HULL_M)
+    }
+
+    /// How often the robot drives onto its own cable on a way home, up to a hull's length before the anchor.
+    fn times_over_on(&self, way: &[Point]) -> usize {
+        let mut run = self.clone();
+        let (mut times, mut was_over) = (0, false);
+        for at in polyline::resampled(way, SPEED_M_PER_S * TICK_S) {
+            let is_over = run.step(at) && (at - run.rules.anchor()).norm() > 2.0 * HULL_M;
+            times += usize::from(is_over && !was_over);
+            was_over = is_over;
+        }
+        times
     }
 
     /// Whether the last tick raised such an alarm.

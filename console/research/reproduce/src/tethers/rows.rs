@@ -53,6 +53,17 @@ fn of_drives(block: &Block<'_>, drives: &[(u64, &Drive)]) -> Vec<Row> {
         over.iter().map(|drive| drive.is_held && drive.times_over_before_hold == 0).collect(),
     ));
     rows.push(rate("freed_rate", drives.iter().filter_map(|(_, drive)| drive.is_freed).collect()));
+    let homes: Vec<(u64, &(usize, usize))> =
+        drives.iter().filter_map(|(seed, drive)| Some((*seed, drive.times_over_home.as_ref()?))).collect();
+    if !homes.is_empty() {
+        rows.push(rate(
+            "home_without_own_cable_rate",
+            homes.iter().map(|(_, (times, _))| *times == 0).collect(),
+        ));
+        rows.push(rate("same_on_taut_line_rate", homes.iter().map(|(_, (_, times))| *times == 0).collect()));
+        rows.extend(worst(block, "times_over_home", "", &homes, |(times, _)| *times as f64));
+        rows.extend(worst(block, "times_over_home_on_taut_line", "", &homes, |(_, times)| *times as f64));
+    }
     rows
 }
 

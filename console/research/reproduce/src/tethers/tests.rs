@@ -37,6 +37,13 @@ fn a_strong_reel_keeps_the_certificate_and_a_weak_one_is_held_before_the_robot_m
 }
 
 #[test]
+fn the_way_home_after_slack_leads_beside_the_cable_that_lies_on_the_floor() {
+    let weak = drive(&tank(), &path(), 1.5);
+    let Some((home, on_line)) = weak.times_over_home else { panic!("not held: {weak:?}") };
+    assert!(home == 0 && on_line > 0, "{weak:?}");
+}
+
+#[test]
 fn the_pull_of_the_certificate_takes_up_the_simulated_cable() {
     let found = reeling(&tank(), &path());
     assert!(found.len() >= 5, "{found:?}");

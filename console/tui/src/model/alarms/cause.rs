@@ -183,6 +183,7 @@ impl Cause {
             "return path",
             "stray",
             "slack",
+            "broken",
             "reel pull",
             "robot pull",
         ];

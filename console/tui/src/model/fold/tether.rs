@@ -34,6 +34,9 @@ impl Run {
                 if matches!(alarm, TetherAlarm::Snag { .. }) {
                     self.tether.get_or_insert_default().is_snagged = true;
                 }
+                if matches!(alarm, TetherAlarm::Broken { .. }) {
+                    self.tether.get_or_insert_default().is_broken = true;
+                }
                 if let (TetherAlarm::Reel { out_m, .. }, false) = (alarm, reached) {
                     self.tether.get_or_insert_default().is_near_end = true;
                     if *out_m <= self.reel_limit_m().unwrap_or(0.0) {

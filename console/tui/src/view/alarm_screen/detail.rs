@@ -98,8 +98,13 @@ pub(super) fn figure(cause: &Cause) -> &'static str {
         Cause::PositionLost => "95 % error, m",
         Cause::Contradiction => "Contradiction, χ²",
         Cause::Station(_) => "Residual, m",
-        Cause::Tether(word) if word.contains("wrap") => "Wrap, °",
-        Cause::Tether(_) => "Tether out, m",
+        Cause::Tether(word) => match word.as_str() {
+            "wrap" | "total wrap" => "Wrap, °",
+            "slack" => "Slack, m",
+            "reel pull" => "Pull to reel in, N",
+            "robot pull" => "Pull at the robot, N",
+            _ => "Tether out, m",
+        },
         Cause::Response => "Response, ms",
         _ => "Figure",
     }
@@ -140,4 +145,18 @@ fn residuals(look: &Look) -> Option<String> {
         format!("{} {words}", look.run.station_name(station).trim_start_matches("station "))
     });
     Some(words.collect::<Vec<_>>().join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_figure_of_a_tether_alarm_has_the_name_of_its_quantity() {
+        let named = |word: &str| figure(&Cause::Tether(word.into()));
+        let [slack, reel, robot] = ["slack", "reel pull", "robot pull"].map(named);
+        assert_eq!([slack, reel, robot], ["Slack, m", "Pull to reel in, N", "Pull at the robot, N"]);
+        assert_eq!(["snag", "reel", "broken"].map(named), ["Tether out, m"; 3]);
+        assert_eq!(["wrap", "total wrap"].map(named), ["Wrap, °"; 2]);
+    }
 }
