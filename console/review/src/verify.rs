@@ -372,12 +372,11 @@ fn recompute(
         computed.extend(flight.tick(&recorded, &mut replayed));
         for difference in recorded.differences(&computed) {
             let difference = difference.context("writing an event as JSON")?;
-            match difference::unrecorded(&difference) {
-                Some(missing) => findings.unrecorded.extend(missing),
-                None => {
-                    findings.difference = Some(difference);
-                    break;
-                }
+            if let Some(missing) = difference::unrecorded(&difference) {
+                findings.unrecorded.extend(missing);
+            } else {
+                findings.difference = Some(difference);
+                break;
             }
         }
         findings.events += recorded.n_compared();

@@ -34,6 +34,15 @@ const fn wish(pane: Pane, least: u16, rows: u16) -> Wish {
     Wish { pane, least, rows }
 }
 
+/// What chooses the ways of the robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Ways {
+    /// A planner.
+    Planner,
+    /// The mission itself, a survey: its pane lists what it has found.
+    Survey,
+}
+
 /// What the layout must show in addition to the panes that every mission has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Shown {
@@ -45,8 +54,8 @@ pub(crate) struct Shown {
     pub missed: bool,
     /// The number of AE stations.
     pub stations: u16,
-    /// Whether the mission is a survey: its pane lists what it has found, and no planner drives.
-    pub survey: bool,
+    /// What chooses the ways of the robot.
+    pub ways: Ways,
     /// The table of the stations, the tether or the survey, if the operator has turned to it; it then takes the place of
     /// other panes.
     pub turned: Option<Pane>,
@@ -61,7 +70,7 @@ impl Shown {
             reel: run.reel().is_some(),
             missed,
             stations,
-            survey: run.is_survey(),
+            ways: if run.is_survey() { Ways::Survey } else { Ways::Planner },
             turned: None,
         }
     }
@@ -87,7 +96,7 @@ pub(crate) fn mission(area: Rect, (width, height): (u16, u16), shown: Shown) -> 
     let side = width.saturating_sub(MAP.0 * floor_rows + MAP.1).clamp(n_stacks * STACK.0, n_stacks * STACK.1);
     let turned = shown.turned.filter(|pane| match pane {
         Pane::Stations => shown.stations > 0,
-        Pane::Coverage => shown.survey,
+        Pane::Coverage => shown.ways == Ways::Survey,
         _ => true,
     });
     let turned = turned.filter(|_| n_stacks == 1);
@@ -198,7 +207,7 @@ fn first(shown: Shown, wide: bool) -> Vec<Wish> {
     let tether = shown.tether.then_some(wish(Pane::Tether, least, most));
     let (planner, coverage) = (wish(Pane::Planner, 4, rows(9, 6)), wish(Pane::Coverage, 4, rows(10, 6)));
     let mut panes: Vec<Wish> = [wish(Pane::Position, 4, rows(8, 5))].into_iter().chain(tether).collect();
-    if shown.survey {
+    if shown.ways == Ways::Survey {
         // No planner drives, and what the survey has found is its result.
         panes.insert(1, wish(Pane::Coverage, rows(6, 4), rows(20, 6)));
         panes.push(planner);
@@ -302,13 +311,13 @@ mod tests {
     fn every_shown() -> impl Iterator<Item = Shown> {
         [(false, false), (true, false), (false, true), (true, true)]
             .into_iter()
-            .flat_map(|parts| [(parts, false), (parts, true)])
-            .map(|((tether, missed), survey)| Shown {
+            .flat_map(|parts| [(parts, Ways::Planner), (parts, Ways::Survey)])
+            .map(|((tether, missed), ways)| Shown {
                 tether,
                 reel: tether,
                 missed,
                 stations: 6,
-                survey,
+                ways,
                 turned: None,
             })
     }
@@ -334,8 +343,14 @@ mod tests {
 
     #[test]
     fn large_screens_have_two_stacks_ten_events_and_charts() {
-        let shown =
-            Shown { tether: true, reel: false, missed: false, stations: 6, survey: false, turned: None };
+        let shown = Shown {
+            tether: true,
+            reel: false,
+            missed: false,
+            stations: 6,
+            ways: Ways::Planner,
+            turned: None,
+        };
         let place = |size: (u16, u16), pane| {
             placed(size.0, size.1, shown)
                 .into_iter()
@@ -366,7 +381,7 @@ mod tests {
         for size in [(120, 36), (80, 24)] {
             let (before, turned) = (rows(size, shown(None)), rows(size, shown(Some(Pane::Coverage))));
             assert!(before >= 4 && turned >= before + 6, "{size:?}: {before} {turned}");
-            let scan = Shown { survey: false, ..shown(Some(Pane::Coverage)) };
+            let scan = Shown { ways: Ways::Planner, ..shown(Some(Pane::Coverage)) };
             assert_eq!(placed(size.0, size.1, scan), placed(size.0, size.1, Shown { turned: None, ..scan }));
         }
     }

@@ -43,12 +43,11 @@ fn lacks_only(path: &str, recorded: &Value, computed: &Value, missing: &mut BTre
             is_known
                 && computed.iter().all(|(key, computed)| {
                     let path = format!("{path}.{key}");
-                    match recorded.get(key) {
-                        Some(recorded) => lacks_only(&path, recorded, computed, missing),
-                        None => {
-                            missing.insert(path);
-                            true
-                        }
+                    if let Some(recorded) = recorded.get(key) {
+                        lacks_only(&path, recorded, computed, missing)
+                    } else {
+                        missing.insert(path);
+                        true
                     }
                 })
         }

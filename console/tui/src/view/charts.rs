@@ -4,7 +4,7 @@ use super::look::Look;
 use super::map::{Pattern, Stroke, Window};
 use super::text;
 use crate::model::history::{HISTORY_S, SLOT_S};
-use crate::model::{History, Pane, ui::Chart};
+use crate::model::{History, Pane, Tether, ui::Chart};
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -94,7 +94,7 @@ fn series<'a>(look: &Look<'a>, chart: Chart) -> Option<Series<'a>> {
         Chart::Wrap => Series {
             title: "Largest wrap, °",
             values: &run.tether.as_ref()?.wrap_history_deg,
-            now: run.tether.as_ref().map(|tether| tether.largest_deg()),
+            now: run.tether.as_ref().map(Tether::largest_deg),
             limit: limits.map(|limits| limits.wrap_max_rad.to_degrees()),
             decimals: 0,
         },

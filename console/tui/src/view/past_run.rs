@@ -38,8 +38,9 @@ pub(super) struct Began {
 impl Began {
     pub(super) fn of(listed: &[&PastRun]) -> Self {
         let mut seen = BTreeSet::new();
-        let has_seconds =
-            listed.iter().any(|run| run.began_unix_s.is_some() && !seen.insert((name(run), run.began.as_str())));
+        let has_seconds = listed
+            .iter()
+            .any(|run| run.began_unix_s.is_some() && !seen.insert((name(run), run.began.as_str())));
         Self { has_seconds }
     }
 
