@@ -17,14 +17,14 @@ const LEAST_RATE: f64 = 300.0;
 const SLOW_RATE: f64 = 9_000.0;
 /// The share of the measured rate that frames use, so that the queue becomes empty.
 const USED: f64 = 0.8;
+/// The longest time that a frame may occupy a slow line, apart from the rows that every frame contains.
+const SHORT_FRAME: Duration = Duration::from_millis(200);
 /// The rate is measured on at least this many bytes, and over at least and at most this time.
 const MEASURED: (usize, Duration, Duration) = (1024, Duration::from_millis(200), Duration::from_mins(1));
 /// A frame that takes this long had to wait until the queue in front of the terminal had room.
 const WAIT: Duration = Duration::from_millis(50);
 /// Bytes that may be left in the queue when a wait ends: it ends when most of the queue is free.
 const LEFT: usize = 4_096;
-/// A frame of this many bytes for which the console did not wait shows that the line is not slow.
-const LARGE: usize = 24_576;
 /// The longest time that new values wait until the line is free, even after a complete redraw: on a line that is not slow,
 /// and on a slow one.
 const LONGEST_DEBT: Duration = Duration::from_millis(250);
@@ -60,9 +60,6 @@ impl Line {
         let left = self.busy.saturating_sub(elapsed);
         let has_waited = sent.took >= WAIT;
         self.measure(sent.bytes, elapsed, has_waited);
-        if sent.bytes >= LARGE && !has_waited {
-            self.measured = None;
-        }
         let rate = self.measured.map_or(self.assumed, |rate| (USED * rate).min(self.assumed));
         let taken = |bytes: usize| Duration::from_secs_f64(bytes as f64 / rate);
         self.busy = match self.measured {
@@ -93,6 +90,11 @@ impl Line {
     /// Whether the line is too slow for the console's frames.
     pub(super) fn is_slow(&self) -> bool {
         self.measured.is_some()
+    }
+
+    /// The bytes that a slow line takes in the time of a short frame; `None` if the line is not slow.
+    pub(super) fn most_bytes(&self) -> Option<usize> {
+        self.measured.map(|rate| (rate * SHORT_FRAME.as_secs_f64()) as usize)
     }
 
     /// How long after the last frame the line is busy with it.
@@ -127,6 +129,7 @@ mod tests {
         let mut line = slow();
         assert!(line.is_slow());
         assert!(line.measured.is_some_and(|rate| (1_900.0..2_000.0).contains(&rate)), "{line:?}");
+        assert!(line.most_bytes().is_some_and(|most| (380..400).contains(&most)), "{line:?}");
         line.sent(frame(800, 0), Duration::from_secs(20));
         let one = line.busy();
         assert!(one > Duration::from_millis(500) && one < Duration::from_millis(530), "{one:?}");
@@ -145,13 +148,12 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_slow_until_it_takes_a_large_frame_at_once() {
+    fn a_slow_line_stays_slow_while_it_takes_short_frames_at_once() {
         let mut line = slow();
-        line.sent(frame(8_000, 0), Duration::from_secs(20));
-        assert!(line.is_slow(), "the queue may have held this frame");
-        line.sent(frame(30_000, 0), Duration::from_secs(20));
-        assert!(!line.is_slow());
-        assert_eq!(line.busy(), LONGEST_DEBT);
+        for _ in 0..100 {
+            line.sent(frame(400, 0), Duration::from_secs(20));
+            assert!(line.is_slow() && line.most_bytes().is_some(), "the queue may have held these frames");
+        }
     }
 
     #[test]

@@ -167,6 +167,11 @@ impl Desk {
         }
     }
 
+    /// Lists a scenario on the home screen, even if its file is in none of the scenario folders.
+    pub(super) fn list(&self, source: &Source) {
+        self.disk.list(source);
+    }
+
     /// The engine of the open run.
     pub(super) fn current(&self) -> Current {
         self.current.clone()
@@ -257,6 +262,7 @@ impl Desk {
     fn replace(&mut self, id: RunId, source: &Source, planner: Option<PlannerChoice>) -> anyhow::Result<()> {
         let opened = match self.prepare(source, planner) {
             Ok((scenario, flight)) => {
+                self.list(source);
                 self.close(false)?;
                 self.launch(id, &scenario, flight)
             }

@@ -13,7 +13,7 @@ use std::{
 };
 use tui::{
     Msg,
-    model::{Glimpse, Log, Run, Together, glimpse::RunKey},
+    model::{Glimpse, Run, Together, glimpse::RunKey},
 };
 
 /// The number of events after which the reader checks whether another run is wanted.
@@ -110,7 +110,6 @@ fn glimpse(folder: &Path, logs: &Path, goes_on: impl Fn() -> bool) -> Result<Opt
             return Ok(None);
         }
     }
-    run.log = Log::default();
     let name = folder.to_string_lossy();
     let combined = combining::of_rescan(&name, &scenario_toml, logs, &goes_on).transpose();
     if !goes_on() {
@@ -118,7 +117,7 @@ fn glimpse(folder: &Path, logs: &Path, goes_on: impl Fn() -> bool) -> Result<Opt
     }
     let combined =
         combined.map(|found| found.map(|found| Box::new(Together::new(found, run.coverage.as_ref()))));
-    Ok(Some(Glimpse { run, summary: summary(folder), combined }))
+    Ok(Some(Glimpse::of(run, summary(folder), combined)))
 }
 
 fn summary(folder: &Path) -> Option<Box<Summary>> {

@@ -164,6 +164,7 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
         Opening::Mission(source, mission) => {
             let (scenario, flight) = *mission;
             desk.open(run, &scenario, flight)?;
+            desk.list(&source);
             Model::opened(run, source, speed)
         }
         Opening::View(folder) => {

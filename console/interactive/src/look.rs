@@ -6,7 +6,7 @@ use mission::{Severity, TaskConfig};
 use runs::Listed;
 use scenario::{Scenario, Settings};
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
     sync::{Mutex, PoisonError},
     time::SystemTime,
@@ -29,12 +29,21 @@ const RECENT: usize = 20;
 pub(super) struct Disk {
     tools: Tools,
     read: Mutex<BTreeMap<PathBuf, (Option<SystemTime>, ScenarioEntry)>>,
+    /// The scenario files that were opened by their paths, wherever they are.
+    opened: Mutex<BTreeSet<PathBuf>>,
 }
 
 impl Disk {
     /// Creates a scan that has not run yet.
     pub(super) fn new(tools: Tools) -> Self {
-        Self { tools, read: Mutex::default() }
+        Self { tools, read: Mutex::default(), opened: Mutex::default() }
+    }
+
+    /// Lists a scenario file from now on, even if it is in none of the folders.
+    pub(super) fn list(&self, source: &Source) {
+        if let Source::File(path) = source {
+            self.opened.lock().unwrap_or_else(PoisonError::into_inner).insert(path.into());
+        }
     }
 
     /// Scans the disk and reports to the screen.
@@ -48,7 +57,10 @@ impl Disk {
         let Tools { logs, .. } = &self.tools;
         let scenarios = self.scenarios();
         let (runs, unreadable) = match runs::list(logs, &review::register()) {
-            Ok(listed) => (listed.iter().rev().take(MOST_RUNS).map(past_run).collect(), None),
+            Ok(listed) => {
+                let newest = listed.iter().rev().take(MOST_RUNS);
+                (newest.map(|run| past_run(run, &scenarios)).collect(), None)
+            }
             Err(error) => (Vec::new(), Some(error.to_string())),
         };
         let mut attention = attention(&runs, &scenarios);
@@ -68,7 +80,7 @@ impl Disk {
         }
     }
 
-    /// The scenarios in the folders, by name; the demo is always included, wherever the console was started.
+    /// The scenarios in the folders and those that were opened by their paths, by name; the demo is always included, wherever the console was started.
     fn scenarios(&self) -> Vec<ScenarioEntry> {
         let folders = &self.tools.config.scenarios;
         let mut files: Vec<PathBuf> = folders
@@ -78,7 +90,9 @@ impl Disk {
             .filter_map(|entry| Some(entry.ok()?.path()))
             .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
             .collect();
+        files.extend(self.opened.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned());
         files.sort();
+        files.dedup();
         let mut entries: Vec<ScenarioEntry> = files.iter().map(|file| self.entry(file)).collect();
         if !entries.iter().any(|entry| entry.name == "demo") {
             entries.push(entry_of(
@@ -167,8 +181,11 @@ fn tank(boundary: &Boundary) -> String {
     }
 }
 
-fn past_run(listed: &Listed) -> PastRun {
+fn past_run(listed: &Listed, scenarios: &[ScenarioEntry]) -> PastRun {
     let began = runs::began(&listed.name);
+    // A mission that does not scan passes over floor, but that is not its result.
+    let entry = scenarios.iter().find(|entry| Some(&entry.name) == listed.scenario.as_ref());
+    let scans = entry.is_none_or(|entry| entry.task.is_empty() || entry.task == "cover");
     PastRun {
         name: listed.name.clone(),
         began: began.map(runs::utc_day_minute).unwrap_or_default(),
@@ -179,7 +196,7 @@ fn past_run(listed: &Listed) -> PastRun {
         planner: listed.planner.clone().unwrap_or_default(),
         end: listed.end.clone(),
         mission_time_s: listed.mission_time_s,
-        reachable: listed.coverage_reachable,
+        reachable: listed.coverage_reachable.filter(|_| scans),
         verified: listed.verified.clone(),
         note: listed.note.clone(),
         remark: listed.remark.clone(),

@@ -19,7 +19,7 @@ use std::{
     time::{Duration, Instant},
 };
 use tui::{
-    Cache, Caps, Effect, Model, Msg, Redraw, ReplayMsg, RunMsg, Signal, ThemeName, redraw,
+    Cache, Caps, Effect, Glyphs, Model, Msg, Redraw, ReplayMsg, RunMsg, Signal, ThemeName, redraw,
     terminal::TerminalGuard,
 };
 
@@ -79,6 +79,7 @@ impl Screen {
         terminal.take_mouse(session.model.ui.mouse).context("enabling the mouse")?;
         let (width, height) = crossterm::terminal::size().unwrap_or((80, 24));
         session.take(Msg::Resize { width, height });
+        session.model.console.keys.spells_arrows = caps.glyphs == Glyphs::Ascii;
         Ok(Self {
             terminal,
             session,
@@ -207,7 +208,12 @@ impl Screen {
 
     fn carry_out(&mut self, effect: &Effect) -> anyhow::Result<Option<Left>> {
         match effect {
-            Effect::Redraw => self.terminal.redraw().context("drawing")?,
+            Effect::Redraw => {
+                // The operator may redraw because the line is another one now; a slow one is noticed again.
+                self.line = Line::new(self.caps.ssh);
+                self.terminal.set_slow(None);
+                self.terminal.redraw().context("drawing")?;
+            }
             Effect::Bell => ring()?,
             Effect::Mouse(taken) => self.terminal.take_mouse(*taken).context("enabling the mouse")?,
             Effect::Copy(line) => self.terminal.copy(line).context("copying")?,
@@ -246,14 +252,15 @@ impl Screen {
         let calm = Duration::from_secs_f64(sent.bytes as f64 / CALM_RATE);
         self.calm_pause = calm.clamp(CALM_FRAME, LONGEST_CALM);
         self.line.sent(sent, self.drawn.elapsed());
-        self.terminal.set_slow(self.line.is_slow());
+        self.terminal.set_slow(self.line.most_bytes());
         if model.ui.mouse {
             self.places.set(self.cache.places());
         }
         self.session.take(Msg::Drawn(self.frames.count()));
         let now = Instant::now();
         self.measure.drew(now, now - self.drawn, interval);
-        (self.drawn, self.due, self.answer_seen) = (now, Redraw::No, false);
+        let due = if self.terminal.is_behind() { Redraw::Soon } else { Redraw::No };
+        (self.drawn, self.due, self.answer_seen) = (now, due, false);
         Ok(())
     }
 }

@@ -125,7 +125,8 @@ pub fn verify_package(file: &Path) -> anyhow::Result<Verified> {
              one that the sender states: {sha256}"
         ));
     }
-    Ok(Verified { is_equal, is_located: false, lines })
+    let brief = lines.join("; ");
+    Ok(Verified { is_equal, is_located: false, lines, brief })
 }
 
 /// A finding.

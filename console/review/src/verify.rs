@@ -27,7 +27,7 @@ use report::document::{Recovered, Revision, SignedRun};
 use runs::{Past, Proof, Signatures, end_is_missing, signatures, signed_under_another_name};
 use scenario::Scenario;
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     path::Path,
     sync::mpsc::sync_channel,
     thread::{self, ScopedJoinHandle},
@@ -45,6 +45,8 @@ const AHEAD_BYTES: u64 = 1 << 20;
 struct Findings {
     /// The first line that differs when recomputed.
     difference: Option<Difference>,
+    /// Values that events lack because an earlier build, which did not record them, wrote the journal; as `tethered.measured`.
+    unrecorded: BTreeSet<String>,
     /// A doubt about the files as a whole.
     doubt: Option<String>,
     /// Whether a report contains the digests of the journal and the recording.
@@ -76,6 +78,8 @@ pub struct Verified {
     pub is_located: bool,
     /// The findings as lines for people.
     pub lines: Vec<String>,
+    /// The findings in one line, for a message that names the run.
+    pub brief: String,
 }
 
 /// Verifies the run in a folder. With plugins, the planners are also asked again; an equal run is then marked
@@ -93,11 +97,15 @@ pub fn verify(folder: &Path, plugins: &PluginDirs, from_journal: bool) -> anyhow
     let proof = (!from_journal).then(|| Proof::begin(folder)).transpose();
     let findings = findings(folder, (!from_journal).then_some(plugins))?;
     let (is_equal, mut lines) = (findings.are_equal(), lines(&findings, plugins));
+    let mut brief = brief(&findings, &lines);
     if is_equal && let Some(proof) = proof? {
         let not_kept = proof.keep(folder, SystemTime::now()).err();
-        lines.extend(not_kept.map(|error| format!("note: the run could not be marked as verified: {error}")));
+        let not_kept =
+            not_kept.map(|error| format!("note: the run could not be marked as verified: {error}"));
+        brief.extend(not_kept.iter().map(|note| format!("; {note}")));
+        lines.extend(not_kept);
     }
-    Ok(Verified { is_equal, is_located: false, lines })
+    Ok(Verified { is_equal, is_located: false, lines, brief })
 }
 
 /// Verifies located readings: there is no mission to recompute, so only files and signed reports are compared.
@@ -120,7 +128,8 @@ fn verify_located(folder: &Path, Measured { file, sha256, .. }: &Measured) -> an
     lines.push(format!("note: not a mission: the readings in {file} were located (SHA-256 {sha256})"));
     lines.extend(signed);
     lines.extend(not_as_signed.iter().map(|doubt| format!("NOT AS SIGNED: {doubt}")));
-    Ok(Verified { is_equal, is_located: true, lines })
+    let brief = lines.join("; ");
+    Ok(Verified { is_equal, is_located: true, lines, brief })
 }
 
 /// Verifies the run in a folder and returns the finding in one line.
@@ -128,9 +137,8 @@ fn verify_located(folder: &Path, Measured { file, sha256, .. }: &Measured) -> an
 /// # Errors
 /// Its journal cannot be read, or the recomputed run differs.
 pub fn verdict(folder: &Path, plugins: &PluginDirs) -> anyhow::Result<String> {
-    let Verified { is_equal, lines, .. } = verify(folder, plugins, false)?;
-    let text = lines.join("; ");
-    if is_equal { Ok(text) } else { anyhow::bail!(text) }
+    let Verified { is_equal, brief, .. } = verify(folder, plugins, false)?;
+    if is_equal { Ok(brief) } else { anyhow::bail!(brief) }
 }
 
 fn findings(folder: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings> {
@@ -181,6 +189,7 @@ impl Findings {
     /// Whether everything except the signed reports is unchanged.
     fn is_run_equal(&self) -> bool {
         self.difference.is_none()
+            && self.unrecorded.is_empty()
             && self.doubt.is_none()
             && self.other_answer().is_none()
             && self.unproven().is_none()
@@ -211,6 +220,13 @@ fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
     } else if let Some(doubt) = doubt {
         lines.push(format!("different: {doubt}; the {events} events up to tick {last_tick} were recomputed"));
     }
+    if !findings.unrecorded.is_empty() && difference.is_none() {
+        let missing = findings.unrecorded.iter().map(String::as_str).collect::<Vec<_>>().join(", ");
+        lines.push(format!(
+            "different: written by an earlier build, which did not record {missing}; all else is identical in the {events} \
+             events from tick 0 to tick {last_tick}"
+        ));
+    }
     lines.extend(planners.iter().flat_map(|asked| &asked.external).map(|(planner, count)| {
         format!("note: external or timing faults of planner {planner}, taken from the journal: {count}")
     }));
@@ -223,7 +239,7 @@ fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
     if let Some(why) = findings.other_answer() {
         lines.push(format!("different: {why}; the mission itself was reproduced from the recorded answers"));
     }
-    if difference.is_some() || findings.other_answer().is_some() {
+    if difference.is_some() || !findings.unrecorded.is_empty() || findings.other_answer().is_some() {
         lines.extend(planner_changes(&findings.builds, plugins).iter().map(|note| format!("note: {note}")));
     }
     if findings.is_live {
@@ -248,6 +264,22 @@ fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
     lines.extend(findings.signed.iter().cloned());
     lines.extend(findings.not_as_signed.iter().map(|doubt| format!("NOT AS SIGNED: {doubt}")));
     lines
+}
+
+/// The findings in one line: of an equal run, how much is identical, and the notes.
+fn brief(findings: &Findings, lines: &[String]) -> String {
+    if !findings.are_equal() {
+        return lines.join("; ");
+    }
+    let events = findings.events;
+    let first = match &findings.planners {
+        Some(Asked { same, .. }) => {
+            format!("verified: all {events} events and {same} planner answers identical")
+        }
+        None => format!("verified: all {events} events identical; the planners were not asked"),
+    };
+    let notes = lines.iter().filter(|line| line.starts_with("note:")).cloned();
+    std::iter::once(first).chain(notes).collect::<Vec<_>>().join("; ")
 }
 
 /// The statement on the planners of a run that was reproduced.
@@ -323,7 +355,8 @@ fn read_ahead(mut ticks: Ticks, giver: &Giver<Vec<Result<RecordedTick, JournalEr
     }
 }
 
-/// Recomputes the mission alongside its journal, up to the first difference.
+/// Recomputes the mission alongside its journal, up to the first difference. An event that only lacks values which an
+/// earlier build did not record does not end the comparison.
 fn recompute(
     mut flight: Flown,
     mut replayed: Replayed,
@@ -337,7 +370,15 @@ fn recompute(
         findings.builds.extend(recorded.opened_planners().map(|info| (info.id.clone(), info.clone())));
         let mut computed = std::mem::take(&mut head);
         computed.extend(flight.tick(&recorded, &mut replayed));
-        findings.difference = recorded.difference(&computed).context("writing an event as JSON")?;
+        for difference in recorded.differences(&computed) {
+            let difference = difference.context("writing an event as JSON")?;
+            if let Some(missing) = difference::unrecorded(&difference) {
+                findings.unrecorded.extend(missing);
+            } else {
+                findings.difference = Some(difference);
+                break;
+            }
+        }
         findings.events += recorded.n_compared();
         findings.last_tick = recorded.tick;
         if findings.difference.is_some() {

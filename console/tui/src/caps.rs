@@ -34,6 +34,11 @@ impl Glyphs {
     pub fn has_dots(self) -> bool {
         matches!(self, Self::Braille | Self::Octant)
     }
+
+    /// The unit of a turn rate; in 7-bit characters, a degree sign would become a letter.
+    pub(crate) fn turn_unit(self) -> &'static str {
+        if self == Self::Ascii { "deg/s" } else { "°/s" }
+    }
 }
 
 /// The terminal's capabilities.

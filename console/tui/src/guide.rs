@@ -63,6 +63,7 @@ pub fn name(cause: &Cause, of: &Run) -> String {
 pub fn meaning(cause: &Cause, of: &Run) -> Guide {
     match cause {
         Cause::Station(id) => of.position.exclusion(*id).map_or(position::STATION, position::excluded),
+        Cause::Tether(word) if word == "reel" && of.is_survey() => tether::REEL_OF_SURVEY,
         cause => guide(cause),
     }
 }
@@ -212,8 +213,9 @@ mod tests {
     #[test]
     fn every_alarm_has_cause_effect_and_one_to_four_remedies() {
         let of_stations = position::EXCLUDED.map(|guide| (Cause::Station(StationId(1)), guide));
+        let of_survey = (Cause::Tether("reel".into()), tether::REEL_OF_SURVEY);
         let all = Cause::every().into_iter().map(|cause| (cause.clone(), guide(&cause)));
-        for (cause, guide) in all.chain(of_stations) {
+        for (cause, guide) in all.chain(of_stations).chain([of_survey]) {
             let texts = guide.remedies.iter().map(|remedy| remedy.text);
             let effects = [guide.holds, guide.effect].into_iter().filter(|text| !text.is_empty());
             assert!(effects.clone().next().is_some(), "{cause:?} has an effect");

@@ -34,6 +34,15 @@ const fn wish(pane: Pane, least: u16, rows: u16) -> Wish {
     Wish { pane, least, rows }
 }
 
+/// What chooses the ways of the robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Ways {
+    /// A planner.
+    Planner,
+    /// The mission itself, a survey: its pane lists what it has found.
+    Survey,
+}
+
 /// What the layout must show in addition to the panes that every mission has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Shown {
@@ -45,8 +54,10 @@ pub(crate) struct Shown {
     pub missed: bool,
     /// The number of AE stations.
     pub stations: u16,
-    /// The table of the stations or the tether, if the operator has turned to it; it then takes the place of other
-    /// panes.
+    /// What chooses the ways of the robot.
+    pub ways: Ways,
+    /// The table of the stations, the tether or the survey, if the operator has turned to it; it then takes the place of
+    /// other panes.
     pub turned: Option<Pane>,
 }
 
@@ -54,7 +65,14 @@ impl Shown {
     /// What the layout must show for a run.
     pub(crate) fn of(run: &Run, missed: bool) -> Self {
         let stations = run.about.as_ref().map_or(0, |about| about.world.stations.len() as u16);
-        Self { tether: run.tether.is_some(), reel: run.reel().is_some(), missed, stations, turned: None }
+        Self {
+            tether: run.tether.is_some(),
+            reel: run.reel().is_some(),
+            missed,
+            stations,
+            ways: if run.is_survey() { Ways::Survey } else { Ways::Planner },
+            turned: None,
+        }
     }
 }
 
@@ -76,7 +94,11 @@ pub(crate) fn mission(area: Rect, (width, height): (u16, u16), shown: Shown) -> 
     let [middle, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(events)]).areas(area);
     let floor_rows = middle.height.saturating_sub(MAP_FRAME);
     let side = width.saturating_sub(MAP.0 * floor_rows + MAP.1).clamp(n_stacks * STACK.0, n_stacks * STACK.1);
-    let turned = shown.turned.filter(|pane| *pane != Pane::Stations || shown.stations > 0);
+    let turned = shown.turned.filter(|pane| match pane {
+        Pane::Stations => shown.stations > 0,
+        Pane::Coverage => shown.ways == Ways::Survey,
+        _ => true,
+    });
     let turned = turned.filter(|_| n_stacks == 1);
     let side = if turned.is_some() { side.max(STACK.1) } else { side };
     let [map, side] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(side)]).areas(middle);
@@ -88,15 +110,21 @@ pub(crate) fn mission(area: Rect, (width, height): (u16, u16), shown: Shown) -> 
         let has_table = width >= 100 && side.height >= TABLE_ROWS && shown.stations > 0;
         let table = wish(Pane::Stations, 6, 2 * shown.stations + 3);
         let tether = wish(Pane::Tether, 9, 12);
+        let survey = wish(Pane::Coverage, 9, side.height);
         if has_table {
             wishes.push(wish(Pane::Stations, 6, shown.stations + 3));
         } else if let Some(turned) = turned {
-            let is_kept = |pane| match arrangement {
-                Arrangement::Narrow => pane == Pane::Position,
+            let is_kept = |pane| match (arrangement, turned) {
+                (Arrangement::Narrow, _) | (_, Pane::Coverage) => pane == Pane::Position,
                 _ => matches!(pane, Pane::Position | Pane::Tether),
             };
             wishes.retain(|wish| is_kept(wish.pane));
-            wishes.insert(1.min(wishes.len()), if turned == Pane::Tether { tether } else { table });
+            let turned = match turned {
+                Pane::Tether => tether,
+                Pane::Coverage => survey,
+                _ => table,
+            };
+            wishes.insert(1.min(wishes.len()), turned);
         }
         placed.extend(stack(side, &wishes));
     } else {
@@ -177,11 +205,16 @@ fn first(shown: Shown, wide: bool) -> Vec<Wish> {
     let rows = |full: u16, short: u16| if wide { full } else { short };
     let (least, most) = if shown.reel { (rows(6, 5), rows(12, 7)) } else { (5, rows(10, 6)) };
     let tether = shown.tether.then_some(wish(Pane::Tether, least, most));
-    [wish(Pane::Position, 4, rows(8, 5))]
-        .into_iter()
-        .chain(tether)
-        .chain([wish(Pane::Planner, 4, rows(9, 6)), wish(Pane::Coverage, 4, rows(10, 6))])
-        .collect()
+    let (planner, coverage) = (wish(Pane::Planner, 4, rows(9, 6)), wish(Pane::Coverage, 4, rows(10, 6)));
+    let mut panes: Vec<Wish> = [wish(Pane::Position, 4, rows(8, 5))].into_iter().chain(tether).collect();
+    if shown.ways == Ways::Survey {
+        // No planner drives, and what the survey has found is its result.
+        panes.insert(1, wish(Pane::Coverage, rows(6, 4), rows(20, 6)));
+        panes.push(planner);
+    } else {
+        panes.extend([planner, coverage]);
+    }
+    panes
 }
 
 /// A chart.
@@ -278,7 +311,15 @@ mod tests {
     fn every_shown() -> impl Iterator<Item = Shown> {
         [(false, false), (true, false), (false, true), (true, true)]
             .into_iter()
-            .map(|(tether, missed)| Shown { tether, reel: tether, missed, stations: 6, turned: None })
+            .flat_map(|parts| [(parts, Ways::Planner), (parts, Ways::Survey)])
+            .map(|((tether, missed), ways)| Shown {
+                tether,
+                reel: tether,
+                missed,
+                stations: 6,
+                ways,
+                turned: None,
+            })
     }
 
     #[test]
@@ -302,7 +343,14 @@ mod tests {
 
     #[test]
     fn large_screens_have_two_stacks_ten_events_and_charts() {
-        let shown = Shown { tether: true, reel: false, missed: false, stations: 6, turned: None };
+        let shown = Shown {
+            tether: true,
+            reel: false,
+            missed: false,
+            stations: 6,
+            ways: Ways::Planner,
+            turned: None,
+        };
         let place = |size: (u16, u16), pane| {
             placed(size.0, size.1, shown)
                 .into_iter()
@@ -321,5 +369,20 @@ mod tests {
         assert!(place((200, 60), Pane::Chart(Chart::Scanned)).is_some());
         // A heading, two rows for each station, and the frame.
         assert!(place((200, 60), Pane::Stations).is_some_and(|stations| stations.height >= 15));
+    }
+
+    #[test]
+    fn the_pane_of_a_survey_gets_the_rows_of_the_others_if_the_operator_turns_to_it() {
+        let shown = |turned| Shown { turned, ..every_shown().last().expect("four kinds of missions") };
+        let rows = |size: (u16, u16), shown: Shown| {
+            let placed = placed(size.0, size.1, shown);
+            placed.into_iter().find(|(pane, _)| *pane == Pane::Coverage).map_or(0, |(_, area)| area.height)
+        };
+        for size in [(120, 36), (80, 24)] {
+            let (before, turned) = (rows(size, shown(None)), rows(size, shown(Some(Pane::Coverage))));
+            assert!(before >= 4 && turned >= before + 6, "{size:?}: {before} {turned}");
+            let scan = Shown { ways: Ways::Planner, ..shown(Some(Pane::Coverage)) };
+            assert_eq!(placed(size.0, size.1, scan), placed(size.0, size.1, Shown { turned: None, ..scan }));
+        }
     }
 }

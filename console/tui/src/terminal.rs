@@ -8,6 +8,7 @@ mod key;
 mod meter;
 mod output;
 mod pointer;
+mod ration;
 mod restore;
 
 pub use decode::{Decoder, Gesture, Input, Pointed};
@@ -23,6 +24,7 @@ use crossterm::{cursor, execute, queue};
 use meter::Meter;
 use output::FrameOutput;
 use ratatui::{Frame, Terminal};
+use ration::Ration;
 use std::io::{self, Write};
 use std::time::Duration;
 
@@ -38,6 +40,11 @@ pub struct TerminalGuard {
     terminal: Terminal<Thrifty>,
     has_mouse: bool,
     meter: Meter,
+    ration: Ration,
+    /// The bytes that a slow line takes in a short time; `None` if the line is not slow.
+    most: Option<usize>,
+    /// Whether the last frame left out rows.
+    is_behind: bool,
 }
 
 impl TerminalGuard {
@@ -54,7 +61,14 @@ impl TerminalGuard {
             Terminal::new(Thrifty::new(FrameOutput::measured(meter.clone())))
         };
         match open() {
-            Ok(terminal) => Ok(Self { terminal, has_mouse: false, meter }),
+            Ok(terminal) => Ok(Self {
+                terminal,
+                has_mouse: false,
+                meter,
+                ration: Ration::default(),
+                most: None,
+                is_behind: false,
+            }),
             Err(error) => {
                 restore();
                 Err(error)
@@ -62,18 +76,31 @@ impl TerminalGuard {
         }
     }
 
-    /// Draws a frame: sends the changes since the last frame as one synchronized update. Returns what was sent.
+    /// Draws a frame: sends the changes since the last frame as one synchronized update. A slow line gets the state of the
+    /// robot, and the other rows in the frames that follow. Returns what was sent.
     ///
     /// # Errors
     /// Fails if writing to the terminal fails.
     pub fn draw(&mut self, view: impl FnOnce(&mut Frame)) -> io::Result<Sent> {
-        self.terminal.draw(view)?;
+        let Self { terminal, ration, most, is_behind, .. } = self;
+        let shown = terminal.draw(|frame| {
+            view(frame);
+            *is_behind = most.is_some_and(|most| ration.limit(frame.buffer_mut(), most));
+        })?;
+        ration.shows(shown.buffer);
         Ok(self.meter.take())
     }
 
-    /// Sets whether the line to the terminal is slow. A terminal on a slow line shows frames while they arrive.
-    pub fn set_slow(&mut self, is_slow: bool) {
-        self.meter.set_slow(is_slow);
+    /// Whether the last frame left out rows, so that another one must follow.
+    pub fn is_behind(&self) -> bool {
+        self.is_behind
+    }
+
+    /// Sets the bytes that a slow line takes in a short time; `None` if the line is not slow. A terminal on a slow line shows
+    /// frames while they arrive.
+    pub fn set_slow(&mut self, most: Option<usize>) {
+        self.most = most;
+        self.meter.set_slow(most.is_some());
     }
 
     /// Makes the next frame draw every cell, without querying the terminal.
@@ -84,6 +111,7 @@ impl TerminalGuard {
         queue!(self.terminal.backend_mut(), Clear(ClearType::All))?;
         // Both buffers are now blank, so every cell counts as changed.
         self.terminal.swap_buffers();
+        self.ration.is_cleared();
         Ok(())
     }
 

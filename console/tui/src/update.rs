@@ -91,6 +91,7 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
         Msg::Notice { severity, text } => news(model, &Cause::Console, severity, text),
     }
     model.ui.parts.without_scan = model.live.is_without_scan();
+    model.ui.parts.survey = model.live.run.is_survey();
     model.ui.parts.tether = model.live.run.tether.is_some();
     events::refresh(model);
     unseen::note(model, question_before.as_ref());

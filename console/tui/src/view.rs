@@ -152,7 +152,8 @@ fn framed(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) 
 pub(crate) fn mission(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     let size = (frame.area().width, frame.area().height);
     let area = timeline::draw(look, frame, area, arrangement);
-    let turned = Some(look.model.ui.pane).filter(|pane| matches!(pane, Pane::Stations | Pane::Tether));
+    let turned = Some(look.model.ui.pane)
+        .filter(|pane| matches!(pane, Pane::Stations | Pane::Tether | Pane::Coverage));
     let shown = Shown { turned, ..Shown::of(look.run, missed::account(look).is_some()) };
     let mut panes = layout::mission(area, size, shown);
     if panes.is_empty() {

@@ -17,7 +17,7 @@ pub struct RecordedTick {
     is_cut: bool,
 }
 
-/// The first difference between a journal and its recomputation.
+/// A difference between a line of a journal and its recomputation.
 #[derive(Debug, PartialEq)]
 pub struct Difference {
     /// The tick.
@@ -68,22 +68,36 @@ impl RecordedTick {
     /// # Errors
     /// A recomputed event cannot be written as JSON.
     pub fn difference(&self, computed: &[Event]) -> Result<Option<Difference>, serde_json::Error> {
+        self.differences(computed).next().transpose()
+    }
+
+    /// The lines that differ, byte for byte, from the recomputed ones, in order. An item is an error if a recomputed event
+    /// cannot be written as JSON.
+    pub fn differences(
+        &self,
+        computed: &[Event],
+    ) -> impl Iterator<Item = Result<Difference, serde_json::Error>> {
         let lines = self.to_compare();
         let end = if self.is_cut { lines.len() } else { lines.len().max(computed.len()) };
-        for index in 0..end {
-            let ours = computed.get(index).map(serde_json::to_string).transpose()?;
+        let of_line = move |index: usize| {
+            let ours = computed.get(index).map(serde_json::to_string).transpose();
+            let ours = match ours {
+                Ok(ours) => ours,
+                Err(error) => return Some(Err(error)),
+            };
             let theirs = lines.get(index).map(|(raw, _)| raw.as_slice());
-            if ours.as_deref().map(str::as_bytes) != theirs {
-                let theirs = theirs.map(|raw| String::from_utf8_lossy(raw).into_owned());
-                let nothing = || "nothing more in this tick".to_owned();
-                return Ok(Some(Difference {
-                    tick: self.tick,
-                    recorded: theirs.unwrap_or_else(nothing),
-                    computed: ours.unwrap_or_else(nothing),
-                }));
+            if ours.as_deref().map(str::as_bytes) == theirs {
+                return None;
             }
-        }
-        Ok(None)
+            let theirs = theirs.map(|raw| String::from_utf8_lossy(raw).into_owned());
+            let nothing = || "nothing more in this tick".to_owned();
+            Some(Ok(Difference {
+                tick: self.tick,
+                recorded: theirs.unwrap_or_else(nothing),
+                computed: ours.unwrap_or_else(nothing),
+            }))
+        };
+        (0..end).filter_map(of_line)
     }
 
     fn to_compare(&self) -> &[Line] {

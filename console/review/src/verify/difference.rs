@@ -1,8 +1,10 @@
-//! The first line of a journal that differs when it is recomputed, as text of a few lines.
+//! A line of a journal that differs when it is recomputed: the first one as text of a few lines, and whether it only lacks
+//! values that an earlier build did not record.
 
 use recording::Difference;
 use report::first_difference;
 use serde_json::Value;
+use std::collections::BTreeSet;
 
 /// Maximum number of characters of an event that is printed as it is.
 const WHOLE: usize = 100;
@@ -21,6 +23,41 @@ pub(super) fn text(Difference { tick, recorded, computed }: &Difference) -> Stri
         })
     };
     format!("different from tick {tick} on{place}\n  recorded: {recorded}\n  computed: {computed}")
+}
+
+/// The values that the recorded event lacks, as `tethered.measured`, if this is the only difference: an earlier build, which
+/// did not know them, wrote the rest of the event. `None` if anything else differs.
+pub(super) fn unrecorded(Difference { recorded, computed, .. }: &Difference) -> Option<BTreeSet<String>> {
+    let [recorded, computed] = [recorded, computed].map(|line| serde_json::from_str::<Value>(line).ok());
+    let (recorded, computed) = (recorded?, computed?);
+    let kind = recorded["event"].as_str().filter(|kind| computed["event"] == **kind)?;
+    let mut missing = BTreeSet::new();
+    (lacks_only(kind, &recorded, &computed, &mut missing) && !missing.is_empty()).then_some(missing)
+}
+
+/// Whether a recorded value equals the computed one except for keys that it lacks; these are added to `missing` below `path`.
+fn lacks_only(path: &str, recorded: &Value, computed: &Value, missing: &mut BTreeSet<String>) -> bool {
+    match (recorded, computed) {
+        (Value::Object(recorded), Value::Object(computed)) => {
+            let is_known = recorded.keys().all(|key| computed.contains_key(key));
+            is_known
+                && computed.iter().all(|(key, computed)| {
+                    let path = format!("{path}.{key}");
+                    if let Some(recorded) = recorded.get(key) {
+                        lacks_only(&path, recorded, computed, missing)
+                    } else {
+                        missing.insert(path);
+                        true
+                    }
+                })
+        }
+        (Value::Array(recorded), Value::Array(computed)) => {
+            let mut pairs = recorded.iter().zip(computed);
+            recorded.len() == computed.len()
+                && pairs.all(|(recorded, computed)| lacks_only(path, recorded, computed, missing))
+        }
+        _ => recorded == computed,
+    }
 }
 
 fn is_short(event: &str) -> bool {
@@ -85,6 +122,30 @@ mod tests {
         assert!(spelling.contains("\"seed\":1}") && spelling.contains("\"seed\": 1}"), "{spelling}");
         let none = said(&event(1, "planned"), "nothing more in this tick");
         assert!(none.contains("computed: nothing more in this tick"), "{none}");
+    }
+
+    #[test]
+    fn only_an_event_that_lacks_values_and_differs_in_nothing_else_is_that_of_an_earlier_build() {
+        let lacks = |recorded: &str, computed: &str| {
+            let difference = Difference { tick: 3, recorded: recorded.into(), computed: computed.into() };
+            unrecorded(&difference).map(|missing| missing.into_iter().collect::<Vec<_>>())
+        };
+        let now = r#"{"event":"tethered","length_m":1.5,"measured":{"pull_n":2.0},"bends":[{"x":1,"on":"C1"},{"x":2}]}"#;
+        let missing = |keys: &[&str]| Some(keys.iter().map(|key| (*key).to_owned()).collect::<Vec<_>>());
+        let before = r#"{"event":"tethered","length_m":1.5,"bends":[{"x":1},{"x":2}]}"#;
+        assert_eq!(lacks(before, now), missing(&["tethered.bends.on", "tethered.measured"]));
+        let others = [
+            now,
+            r#"{"event":"tethered","length_m":1.6,"bends":[{"x":1},{"x":2}]}"#,
+            r#"{"event":"tethered","length_m":1.5,"bends":[{"x":1}]}"#,
+            r#"{"event":"tethered","length_m":1.5,"bends":[{"x":1},{"x":2}],"older":1}"#,
+            r#"{"event":"planned","length_m":1.5,"bends":[{"x":1},{"x":2}]}"#,
+            "nothing more in this tick",
+        ];
+        for other in others {
+            assert_eq!(lacks(other, now), None, "{other}");
+        }
+        assert_eq!(lacks(&now.replace(",\"bends", ", \"bends"), now), None, "only spelt differently");
     }
 
     #[test]

@@ -32,6 +32,7 @@ fn every_finding_has_a_line_and_only_an_equal_run_is_equal() {
         ("not proven", asked(|asked| asked.unproven = Some("tick 8: planner apf hung".into()))),
         ("other answer", asked(|asked| asked.difference = Some("tick 8: planner apf answers".into()))),
         ("difference", Findings { difference: Some(difference), ..equal() }),
+        ("earlier build", Findings { unrecorded: ["tethered.measured".to_owned()].into(), ..equal() }),
         ("doubt", Findings { doubt: Some("events.jsonl.zst was changed".into()), ..equal() }),
         ("no report", Findings { is_reported: false, ..equal() }),
         ("killed", Findings { no_end: Some("the last line is cut".into()), ..equal() }),

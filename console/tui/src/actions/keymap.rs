@@ -21,6 +21,9 @@ pub struct Keymap {
     /// Whether sentences name commands instead of keys, because no keyboard is used.
     #[serde(default)]
     pub spells_commands: bool,
+    /// Whether the arrow keys are named by words, because the terminal has no arrows.
+    #[serde(default)]
+    pub spells_arrows: bool,
 }
 
 /// An action with the keys that the operator assigns to it.
@@ -62,7 +65,19 @@ impl Keymap {
 
     /// The keys of an action as text.
     pub fn text(&self, action: &Action) -> String {
-        self.of(action).iter().map(Key::to_string).collect::<Vec<_>>().join(" ")
+        self.texts(action).join(" ")
+    }
+
+    /// The text of each key of an action.
+    pub fn texts(&self, action: &Action) -> Vec<String> {
+        self.of(action).iter().map(|key| self.key_text(*key)).collect()
+    }
+
+    /// A key as text.
+    pub fn key_text(&self, key: Key) -> String {
+        let is_arrow =
+            matches!(key, Key::Up | Key::Down | Key::Left | Key::Right | Key::CtrlLeft | Key::CtrlRight);
+        if self.spells_arrows && is_arrow { key.name() } else { key.to_string() }
     }
 
     /// Replaces each `<end>`-style placeholder in a sentence with the key of the named action; for an action without
@@ -89,7 +104,7 @@ impl Keymap {
             return Some(self.command(action));
         }
         Some(match self.key_of(action) {
-            Some(key) => key.to_string(),
+            Some(key) => self.key_text(key),
             None if action.is_command() => format!(":{name}"),
             None => "(no key)".into(),
         })

@@ -46,6 +46,8 @@ pub enum When {
     Resuming,
     /// Until the end of the mission.
     BeforeEnd,
+    /// Until the end of a mission that a planner drives; a survey drives without one.
+    Planned,
 }
 
 impl When {
@@ -60,6 +62,7 @@ impl When {
             Self::Moving => Context::of(phase).moves(),
             Self::Resuming => matches!(phase, Phase::Held(hold) if !hold.resumes.is_never()),
             Self::BeforeEnd => Context::of(phase) != Context::Ended,
+            Self::Planned => Context::of(phase) != Context::Ended && !run.is_survey(),
         }
     }
 }
@@ -94,9 +97,9 @@ pub(super) const END: Remedy =
 pub(super) const SHOW: Remedy = run("Show it on the map.", ActionId::ShowPlace);
 pub(super) const SLOWER: Remedy = run("Slow the simulation down (<slower>).", ActionId::Slower);
 pub(super) const OTHER_PLANNER: Remedy =
-    run("Change the planner (<planner>). Asks first.", ActionId::ChoosePlanner).when(When::BeforeEnd);
+    run("Change the planner (<planner>). Asks first.", ActionId::ChoosePlanner).when(When::Planned);
 pub(super) const PARAMETERS: Remedy =
-    run("Change the planner's parameters (<parameters>).", ActionId::Parameters).when(When::BeforeEnd);
+    run("Change the planner's parameters (<parameters>).", ActionId::Parameters).when(When::Planned);
 pub(super) const RESUME: Remedy =
     run("Resume: the planner tries again. Asks first.", ActionId::Resume).when(When::Held);
 pub(super) const PLAN_AGAIN: Remedy =

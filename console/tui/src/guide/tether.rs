@@ -22,6 +22,21 @@ pub(super) fn name(word: &str) -> String {
     }
 }
 
+/// The meaning of the alarm about the length in a survey, which has no certified plan.
+pub(super) const REEL_OF_SURVEY: Guide = Guide {
+    cause: "More than 80 % of the tether is out. A survey chooses its ways within the reel and leaves out the places beyond \
+    it.",
+    holds: "When the reel is empty, the robot is held.",
+    effect: "",
+    remedies: &[
+        wait("Wait: the survey keeps its ways within the reel.").when(When::Moving),
+        run("Resume: frees the tether, then chooses another way. Asks first.", ActionId::Resume)
+            .when(When::Held),
+        run("Drive back to the anchor or the start. Asks first.", ActionId::DriveBack).when(When::Held),
+        END,
+    ],
+};
+
 /// The meaning of a tether alarm, and what the operator can do about it.
 pub(super) fn guide(word: &str) -> Guide {
     match word {

@@ -1,13 +1,16 @@
 //! Details of past runs, beyond their lines in a list: read from disk when a run is selected and there is room
 //! to show it.
 
-use super::{Run, Together};
+use super::{Entry, Run, Together};
 use account::Summary;
+use mission::Severity;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
 /// The number of runs that are remembered.
 const MOST: usize = 8;
+/// The number of events of a run that are remembered: the last ones.
+const MOST_EVENTS: usize = 60;
 
 /// The details of a past run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -20,9 +23,25 @@ pub struct Glimpse {
     /// computed.
     #[serde(default)]
     pub combined: Option<Result<Box<Together>, String>>,
+    /// The last events of severity INFO and above, newest first.
+    #[serde(default)]
+    pub events: Vec<Entry>,
 }
 
 impl Glimpse {
+    /// The details of a run that has been folded from its journal. Of its log, only the last events are kept.
+    pub fn of(
+        mut run: Run,
+        summary: Option<Box<Summary>>,
+        combined: Option<Result<Box<Together>, String>>,
+    ) -> Self {
+        let log = std::mem::take(&mut run.log);
+        let entries = (log.oldest()..log.end()).rev().filter_map(|number| log.get(number));
+        let shown = entries.filter(|entry| entry.severity >= Severity::Info);
+        let events = shown.take(MOST_EVENTS).cloned().collect();
+        Self { run, summary, combined, events }
+    }
+
     /// The combined scan of a re-scan and the runs before it.
     pub fn together(&self) -> Option<&Together> {
         self.combined.iter().flatten().map(|together| &**together).next()

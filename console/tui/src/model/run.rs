@@ -2,8 +2,8 @@
 
 use super::alarms::rule::Context;
 use super::{
-    Alarms, History, Log, Planning, Position, Raster, Shadow, Tether, Trail, log::What, scanner::Scanner,
-    survey::Survey,
+    Alarms, Cause, History, Log, Planning, Position, Raster, Shadow, Tether, Trail, log::What,
+    scanner::Scanner, survey::Survey,
 };
 use mission::{
     EventKind, FoldedStanding, MissionConfig, Phase, PlannerInfo, TaskConfig, WayBack, event::TetherAlarm,
@@ -190,6 +190,11 @@ impl Run {
     /// Whether the mission's task is to scan the floor.
     pub fn covers(&self) -> bool {
         self.about.as_ref().is_some_and(|about| matches!(about.mission.task, TaskConfig::Cover { .. }))
+    }
+
+    /// Whether the hull is in a no-go zone.
+    pub fn is_in_zone(&self) -> bool {
+        self.alarms.list().iter().any(|alarm| matches!(alarm.cause, Cause::Zone(_)) && alarm.is_active())
     }
 
     /// Whether unscanned floor counts as missed: only in missions whose task was to scan.

@@ -1,6 +1,6 @@
 //! A survey: the map made so far, and where the robot drives.
 
-use super::Run;
+use super::{Model, Run, Screen};
 use exploration::{CellState, Column, Grid};
 use mission::event::{Explored, SurveyWay};
 use mission::{Event, EventKind};
@@ -101,6 +101,19 @@ impl Survey {
             cells.for_each(|cell| *self.states.at_mut(cell) = state);
             self.stamp += 1;
         }
+    }
+}
+
+impl Model {
+    /// Whether the run that a re-scan would continue is a survey: the re-scan is then a plan for a scan of its map.
+    pub(crate) fn rescans_a_survey(&self) -> bool {
+        let selected = match self.ui.screen {
+            Screen::Home => self.home.selected_run(),
+            Screen::Review => self.review.run(&self.home),
+            _ => return self.live.run.is_survey(),
+        };
+        let glimpse = selected.and_then(|run| self.home.glimpses.of(&run.name)?.as_ref().ok());
+        glimpse.is_some_and(|glimpse| glimpse.run.is_survey())
     }
 }
 

@@ -80,6 +80,11 @@ impl Tether {
         self.contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()))
     }
 
+    /// The largest wrap, degrees; 0 without a contact.
+    pub fn largest_deg(&self) -> f64 {
+        self.largest().map_or(0.0, |contact| contact.wrap_rad.abs().to_degrees())
+    }
+
     /// Records the geometry of the cable between the anchor and the robot.
     pub(crate) fn lie(&mut self, t_s: f64, event: &EventKind, ends: Option<(Point, Point)>) {
         if let EventKind::Tethered {

@@ -277,12 +277,22 @@ fn view(model: &Model, run: String) -> Job {
 /// Reports that work on a past run has finished.
 pub(super) fn done(model: &mut Model, job: &Job, result: Result<String, String>) -> Vec<Effect> {
     let (severity, text) = match result {
+        Ok(text) if matches!(job, Job::Verify(_)) => {
+            (Severity::Info, format!("{} {text}", briefly_named(model, job.run())))
+        }
         Ok(text) => (Severity::Info, format!("{}: {text}", job.run())),
         Err(why) => (Severity::Warn, format!("{} {} failed: {why}", job.word(), job.run())),
     };
     model.live.run.log.add(model.live.run.clock.t_s, severity, "console", text.clone());
     model.say(severity, text);
     vec![Effect::Look]
+}
+
+/// A past run in a few words: its scenario and when it began, UTC; the name of its folder if it is not in the list.
+fn briefly_named(model: &Model, run: &str) -> String {
+    let listed = model.home.found.iter().flat_map(|found| &found.runs).find(|past| past.name == run);
+    let named = listed.filter(|past| !past.scenario.is_empty() && !past.began.is_empty());
+    named.map_or_else(|| run.to_owned(), |past| format!("{} {}", past.scenario, past.began))
 }
 
 impl Job {

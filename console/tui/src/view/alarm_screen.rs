@@ -212,7 +212,15 @@ fn wide(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
     draw_detail(look, frame, left, alarm, detail);
     fill(frame, steps, actions_block(look, alarm, "Actions"), actions);
     draw_chart(look, frame, curve, alarm);
-    draw_events(look, frame, below, alarm);
+    // Rows that the events of the alarm do not need show what led to it.
+    let own = (alarm.events.len() as u16 + 2).max(EVENTS - 1);
+    let around = below.height.saturating_sub(own);
+    let around = if around < EVENTS { 0 } else { around };
+    let [own, around] = Layout::vertical([Constraint::Fill(1), Constraint::Length(around)]).areas(below);
+    draw_events(look, frame, own, alarm);
+    if around.height > 0 {
+        before::draw(look, frame, around, alarm);
+    }
 }
 
 fn narrow(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
@@ -276,7 +284,8 @@ fn draw_chart(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
         most if most < 100.0 => 1,
         _ => 0,
     };
-    let series = Series { title: detail::figure(&alarm.cause), values: &alarm.history, limit, decimals };
+    let series =
+        Series { title: detail::figure(&alarm.cause), values: &alarm.history, now: None, limit, decimals };
     charts::figure(look, frame, area, &series);
 }
 

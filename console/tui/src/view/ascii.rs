@@ -34,6 +34,7 @@ const PLAIN: &[(&str, char)] = &[
 /// Replaces every character outside ASCII; a question mark where there is no better replacement.
 pub(super) fn reduce(buffer: &mut Buffer) {
     lengthen_ellipses(buffer);
+    lengthen_errors(buffer);
     for cell in &mut buffer.content {
         if !cell.symbol().is_ascii() {
             cell.set_char(plain(cell.symbol()));
@@ -48,6 +49,19 @@ fn lengthen_ellipses(buffer: &mut Buffer) {
         if buffer.content[next - 1].symbol() == "…" && buffer.content[next].symbol() == " " {
             let style = buffer.content[next - 1].style();
             buffer.content[next].set_char('.').set_style(style);
+        }
+    }
+}
+
+/// Writes a plus-minus sign as two characters where a blank is before it: one would look like the word "about" or like the
+/// tether.
+fn lengthen_errors(buffer: &mut Buffer) {
+    let width = usize::from(buffer.area.width);
+    for at in (1..buffer.content.len()).filter(|at| at % width.max(1) != 0) {
+        if buffer.content[at].symbol() == "±" && buffer.content[at - 1].symbol() == " " {
+            let style = buffer.content[at].style();
+            buffer.content[at - 1].set_char('+').set_style(style);
+            buffer.content[at].set_char('-');
         }
     }
 }

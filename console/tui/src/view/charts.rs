@@ -4,7 +4,7 @@ use super::look::Look;
 use super::map::{Pattern, Stroke, Window};
 use super::text;
 use crate::model::history::{HISTORY_S, SLOT_S};
-use crate::model::{History, Pane, ui::Chart};
+use crate::model::{History, Pane, Tether, ui::Chart};
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -28,6 +28,8 @@ const HEADROOM: f64 = 1.15;
 pub(super) struct Series<'a> {
     pub title: &'static str,
     pub values: &'a History,
+    /// The value now or at the end of the run; `None` for the last one of the history, which is the largest of a few seconds.
+    pub now: Option<f64>,
     pub limit: Option<f64>,
     pub decimals: usize,
 }
@@ -43,8 +45,8 @@ fn note(look: &Look, series: &Series, area: Rect) -> String {
     let room = usize::from(area.width).saturating_sub(text::width(series.title) + 8);
     let said = |value: f64| text::number(value, series.decimals);
     let when = if look.run.has_ended() { "end" } else { "now" };
-    let now =
-        series.values.last(SLOT_S).last().map_or_else(String::new, |last| format!("{when} {}, ", said(last)));
+    let last = series.now.or_else(|| series.values.last(SLOT_S).last());
+    let now = last.map_or_else(String::new, |last| format!("{when} {}, ", said(last)));
     let limit = series.limit.map_or_else(String::new, |limit| format!("limit {}, ", said(limit)));
     let minutes = text::minutes(series.values, HISTORY_S);
     text::wording([format!("{now}{limit}{minutes}"), format!("{limit}{minutes}"), minutes], room)
@@ -71,30 +73,35 @@ fn series<'a>(look: &Look<'a>, chart: Chart) -> Option<Series<'a>> {
         Chart::Error => Series {
             title: "95 % error, m",
             values: &run.position.history_m,
+            now: run.position.error_m(),
             limit: Some(about.mission.position_limit_m),
             decimals: 2,
         },
         Chart::Residual => Series {
             title: "Residual RMS, mm",
             values: &run.position.residual_history_mm,
+            now: None,
             limit: None,
             decimals: 0,
         },
         Chart::TetherOut => Series {
             title: "Tether out, m",
             values: &run.tether.as_ref()?.length_history_m,
+            now: run.tether.as_ref().map(|tether| tether.length_m),
             limit: limits.map(|limits| limits.reel_length_m),
             decimals: 1,
         },
         Chart::Wrap => Series {
             title: "Largest wrap, °",
             values: &run.tether.as_ref()?.wrap_history_deg,
+            now: run.tether.as_ref().map(Tether::largest_deg),
             limit: limits.map(|limits| limits.wrap_max_rad.to_degrees()),
             decimals: 0,
         },
         Chart::Scanned => Series {
             title: "Scanned, % of reachable",
             values: &run.scanned_history,
+            now: None,
             limit: None,
             decimals: 1,
         },

@@ -103,6 +103,10 @@ fn asked(model: &Model) -> Option<Vec<String>> {
     asked_with(model, true)
 }
 
+/// What may happen to a robot that resumes in a no-go zone, and what is safer.
+const IN_ZONE: &str = "The HULL IS IN A NO-GO ZONE: the robot drives in the zone and may get stuck there. Safer: <cancel>, then \
+                       <return> drives back.";
+
 /// The question whether to run a plan without a certificate, with the reason for which it was refused.
 fn uncertified(phase: &Phase) -> Vec<String> {
     let question = "Run uncertified plan? <accept>: run, <cancel>: stay held.".into();
@@ -135,7 +139,9 @@ fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
         }
         Overlay::Confirm(Ask::Resume) => {
             let question = "Resume? The robot will move. <accept>: resume, <cancel>: cancel.".into();
-            [question, moves(model)].into_iter().chain(continues(model)).collect()
+            let in_zone = model.live.run.is_in_zone().then(|| IN_ZONE.to_owned());
+            let first = std::iter::once(question).chain(in_zone);
+            first.chain([moves(model)]).chain(continues(model)).collect()
         }
         Overlay::Confirm(Ask::FlyUncertified) => uncertified(model.live.run.phase()),
         Overlay::Confirm(Ask::Swap(choice)) => {

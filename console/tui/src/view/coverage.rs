@@ -54,10 +54,10 @@ fn wide_lines(look: &Look, bases: &Bases, columns: usize) -> Vec<(u8, Line<'stat
     let out_of_reach = text::wording(out_of_reach, room);
     let overlap = run.coverage.as_ref().and_then(Raster::overlap).map_or_else(|| "-".into(), text::percent);
     let mut lines = vec![
-        row(0, &format!("{mark}scanned"), shares(&first_scanned, &second_scanned)),
+        row(0, &format!("{mark}{}", word(look.model)), shares(&first_scanned, &second_scanned)),
         (1, look.line([(Role::Good, format!(" {}", bases.bar(columns.saturating_sub(2))))])),
         row(7, "unreachable", out_of_reach),
-        row(5, "speed", pace(run, room)),
+        row(5, "speed", pace(look.model, room)),
         row(6, "overlap", format!("{overlap} % of scanned floor")),
         row(4, way_label(run, room), way(run)),
         row(2, "time left", left(look, true)),
@@ -205,20 +205,27 @@ fn untestable(run: &Run) -> Option<String> {
     (percent > 0.0).then(|| text::number(percent, 1))
 }
 
+/// What the tool did with the floor under it: a mission that does not scan passes over floor.
+fn word(model: &Model) -> &'static str {
+    if model.live.run.covers() || model.live.is_rescan() { "scanned" } else { "passed over" }
+}
+
 /// The label for unscanned floor: still to do, or missed once the mission has ended.
 fn to_do_label(run: &Run) -> &'static str {
     if run.has_ended() { "missed" } else { "to do" }
 }
 
 /// The speed over ground while the robot may move, the scanned floor per minute, and the scanned floor.
-fn pace(run: &Run, room: usize) -> String {
+fn pace(model: &Model, room: usize) -> String {
+    let run = &model.live.run;
     let scanned_m2 = run.coverage.as_ref().map_or(0.0, Raster::scanned_m2);
     let minutes = run.clock.moving_s / 60.0;
     let rate = if minutes > 0.2 { text::number(scanned_m2 / minutes, 1) } else { "-".into() };
     let speed = run.speed_m_per_s().map_or_else(|| "-".into(), |speed| text::number(speed, 2));
     let pace = format!("{speed} m/s, {rate} m²/min");
     let scanned = text::number(scanned_m2, 0);
-    text::wording([format!("{pace}, {scanned} m² scanned"), format!("{pace}, {scanned} m²"), pace], room)
+    let what = word(model);
+    text::wording([format!("{pace}, {scanned} m² {what}"), format!("{pace}, {scanned} m²"), pace], room)
 }
 
 /// The label of the path that the task presets or, without one, of the planner's path; the two have different lengths.

@@ -161,10 +161,10 @@ fn hints(model: &Model) -> Vec<Hint> {
         let label = label(action, model);
         match hints.last_mut().filter(|last| last.label == label) {
             Some(last) => {
-                last.keys = format!("{} {key}", last.keys);
+                last.keys = format!("{} {}", last.keys, model.console.keys.key_text(*key));
                 last.id = action.id;
             }
-            None => hints.push(Hint { id: action.id, keys: key.to_string(), label }),
+            None => hints.push(Hint { id: action.id, keys: model.console.keys.key_text(*key), label }),
         }
     }
     hints
@@ -213,8 +213,8 @@ fn is_pointless(id: ActionId, model: &Model) -> bool {
             let is_known = model.ui.screen == Screen::Result && model.live.floor().is_some();
             is_known && model.live.missed().is_empty()
         }
-        // They cannot be changed on a console that gives no orders.
-        ActionId::Parameters => model.live.is_look_only(),
+        // They cannot be changed on a console that gives no orders, and a survey has no planner.
+        ActionId::Parameters => model.live.is_look_only() || model.live.run.is_survey(),
         // Nothing on the home screen moves.
         ActionId::Slower | ActionId::Faster => model.ui.screen == Screen::Home,
         _ => false,
@@ -234,6 +234,7 @@ fn label(action: &Action, model: &Model) -> String {
             }
         }
         (ActionId::Interrupt, _) if is_typing(model) => "HOLD",
+        (ActionId::Rescan, Overlay::None) if model.rescans_a_survey() => "plan a scan",
         (ActionId::Cancel, Overlay::None) => "close cursor",
         (ActionId::Accept, Overlay::None) => (model.ui.screen.row().opens)(model).unwrap_or_default(),
         (ActionId::Back, _) if model.ui.screen == Screen::Home => "quit",

@@ -8,10 +8,10 @@ mod scenarios;
 mod setup;
 
 use super::look::{Look, fill};
-use super::text;
-use crate::model::Model;
+use super::{run_details, text};
 use crate::model::home::{Found, HomeList};
 use crate::model::ui::Arrangement;
+use crate::model::{Glimpse, Model};
 use crate::theme::Role;
 use crate::update::Rows;
 use mission::Severity;
@@ -22,6 +22,8 @@ use ratatui::layout::{Constraint, Layout, Rect};
 const LISTS: (u16, u16) = (80, 96);
 /// Rows of the plugins pane.
 const PLUGINS: u16 = 5;
+/// The fewest rows of a pane of events, including the frame.
+const EVENTS: u16 = 8;
 
 pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     let Some(found) = &look.model.home.found else {
@@ -45,12 +47,36 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
                 Layout::horizontal([Constraint::Length(width), Constraint::Fill(1)]).areas(area);
             let [about, plugins] =
                 Layout::vertical([Constraint::Fill(1), Constraint::Length(PLUGINS)]).areas(beside);
-            let rows = shares(lists.height, list, wanted(look, lists.width, (found, false)));
+            let wanted = wanted(look, lists.width, (found, false));
+            let mut rows = shares(lists.height, list, wanted);
+            // Rows that no list needs show the events of the run that is described beside the lists.
+            let spare = rows[HomeList::Runs as usize].saturating_sub(wanted[HomeList::Runs as usize]);
+            let glimpse = described(look).filter(|glimpse| !glimpse.events.is_empty() && spare >= EVENTS);
+            let spare = if glimpse.is_some() { spare } else { 0 };
+            rows[HomeList::Runs as usize] -= spare;
+            let [lists, events] =
+                Layout::vertical([Constraint::Fill(1), Constraint::Length(spare)]).areas(lists);
             stack(look, frame, lists, (found, false, rows));
+            if let Some(glimpse) = glimpse {
+                run_details::events(look, frame, events, glimpse);
+            }
             about::draw(look, frame, about, found);
             about::plugins(look, frame, plugins);
         }
     }
+}
+
+/// The details of the run that a large screen describes beside the lists: of the selected run, or of the last run of the
+/// selected scenario.
+fn described<'a>(look: &Look<'a>) -> Option<&'a Glimpse> {
+    let home = &look.model.home;
+    let run = match home.list {
+        HomeList::Scenarios => home.last_end(&home.selected_scenario()?.name),
+        HomeList::Runs => home.selected_run(),
+        HomeList::Attention => None,
+    };
+    let glimpse = home.glimpses.of(&run?.name)?.as_ref().ok();
+    glimpse.filter(|_| look.model.ui.is_large()).map(|glimpse| &**glimpse)
 }
 
 /// The rows that each list needs, given whether the selected row is described below its list.

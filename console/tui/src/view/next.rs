@@ -289,11 +289,13 @@ fn running(model: &Model) -> Clauses {
     }
     let last = if let Some(alarm) = alarms.worst_returned() {
         let name = text::capitalized(&guide::name(&alarm.cause, &model.live.run));
-        Some(format!("{name} (cleared). {ACKNOWLEDGE}"))
+        let figure = alarm.peak.as_ref().filter(|peak| !peak.limit.is_empty());
+        let figure = figure.map(|peak| format!("It reached {}, limit {}.", peak.now, peak.limit));
+        [Some(format!("{name} (cleared). {ACKNOWLEDGE}")), figure]
     } else {
-        (role == Role::Title).then(|| "No action required.".to_owned())
+        [(role == Role::Title).then(|| "No action required.".to_owned()), None]
     };
-    (role, doing.into_iter().chain(last).collect())
+    (role, doing.into_iter().chain(last.into_iter().flatten()).collect())
 }
 
 /// What the robot does now: a better plan on offer, the way to the start of a new plan, or the next target.

@@ -15,17 +15,48 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
 use ratatui::widgets::Block;
 use std::cmp::Reverse;
+use std::collections::BTreeSet;
 
 /// Width of the figure names, columns.
 const NAMES: usize = 11;
 /// The minimum width at which the map can be beside the figures, columns.
 const BESIDE: u16 = 76;
-/// Width of the figures beside a map, columns.
+/// Minimum and maximum width of the figures beside a map, columns.
 const FIGURES: u16 = 46;
+const MOST_FIGURES: u16 = 76;
 /// The minimum number of rows below the figures at which the map is drawn there.
 const BELOW: u16 = 9;
 /// The number of missed areas that are marked on the map.
 const MARKED: usize = 9;
+
+/// When runs began, as a column of a list: to the second if two runs of a scenario began in the same minute.
+#[derive(Clone, Copy)]
+pub(super) struct Began {
+    has_seconds: bool,
+}
+
+impl Began {
+    pub(super) fn of(listed: &[&PastRun]) -> Self {
+        let mut seen = BTreeSet::new();
+        let has_seconds = listed
+            .iter()
+            .any(|run| run.began_unix_s.is_some() && !seen.insert((name(run), run.began.as_str())));
+        Self { has_seconds }
+    }
+
+    /// The width of the column, with a blank behind it, columns.
+    pub(super) fn width(self) -> usize {
+        if self.has_seconds { 16 } else { 13 }
+    }
+
+    /// When a run began, in the width of the column.
+    pub(super) fn text(self, run: &PastRun) -> String {
+        let second = run.began_unix_s.filter(|_| self.has_seconds);
+        let second = second.map_or_else(String::new, |s| format!(":{:02}", s.rem_euclid(60.0).floor()));
+        let began = if run.began.is_empty() { "-" } else { &run.began };
+        text::column(&format!("{began}{second}"), self.width())
+    }
+}
 
 /// The details of a run, the area for them, and the area for the map.
 struct Divided<'a> {
@@ -39,7 +70,9 @@ fn divided<'a>(look: &Look<'a>, area: Rect, run: &PastRun) -> Divided<'a> {
     let glimpse = look.model.home.glimpses.of(&run.name).and_then(|found| found.as_ref().ok());
     let map = glimpse.and_then(|glimpse| map(glimpse));
     let beside = map.is_some() && is_beside(inner, |columns| lines(look, run, columns).len());
-    let figures = if beside { FIGURES } else { inner.width };
+    let columns = map.as_ref().map_or(0, |map| map.columns(inner.height));
+    let figures =
+        if beside { inner.width.saturating_sub(columns).clamp(FIGURES, MOST_FIGURES) } else { inner.width };
     let lines = lines(look, run, usize::from(figures));
     let [left, right] = Layout::horizontal([Constraint::Length(figures), Constraint::Fill(1)]).areas(inner);
     let rows = (lines.len() as u16).min(left.height);
@@ -246,6 +279,40 @@ fn wrapped(role: Role, words: &str, columns: usize) -> impl Iterator<Item = Part
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn runs_of_one_minute_are_told_apart_by_their_seconds() {
+        let run = |scenario: &str, began: &str, second: f64| PastRun {
+            scenario: scenario.into(),
+            began: began.into(),
+            began_unix_s: Some(1_795_000_020.0 + second),
+            ..past("20261130T013224Z-demo")
+        };
+        let [one, other] = [run("demo", "30 Nov 01:32", 24.0), run("demo", "30 Nov 01:32", 45.9)];
+        let began = Began::of(&[&one, &other]);
+        assert_eq!([began.text(&one), began.text(&other)], ["30 Nov 01:32:24 ", "30 Nov 01:32:45 "]);
+        let apart = [run("demo", "30 Nov 01:33", 24.0), run("cart", "30 Nov 01:32", 24.0)];
+        for other in &apart {
+            assert_eq!(Began::of(&[&one, other]).text(&one), "30 Nov 01:32 ");
+        }
+    }
+
+    fn past(name: &str) -> PastRun {
+        PastRun {
+            name: name.into(),
+            began: String::new(),
+            began_unix_s: None,
+            scenario: String::new(),
+            planner: String::new(),
+            end: "complete".into(),
+            mission_time_s: None,
+            reachable: None,
+            verified: None,
+            note: None,
+            remark: None,
+            bookmarks: 0,
+        }
+    }
 
     #[test]
     fn a_long_name_is_broken_after_hyphens_and_loses_nothing() {

@@ -53,7 +53,7 @@ fn rows_of(look: &Look, wide: bool, room: usize) -> Vec<(u8, &'static str, Value
             words.map(|(words, rank)| (rank, if rank == 2 { "fault" } else { "" }, (Role::Crit, words))),
         );
     }
-    rows.extend(shadow::rows(run, room));
+    rows.extend(shadow::rows(look, room));
     rows.extend(run.planning.offer.iter().map(|offer| (2, "better", better(look, offer, room))));
     rows.extend([
         (0, "speed", pose(motion(run, room))),
@@ -138,7 +138,8 @@ fn command(look: &Look, room: usize) -> Value {
     let (full, short) = match command.drive {
         Drive::Twist { v_m_per_s, w_rad_per_s } => {
             let (speed, turn) = (text::number(v_m_per_s, 2), text::number(w_rad_per_s.to_degrees(), 1));
-            (format!("{speed} m/s, turn {turn} °/s"), format!("{speed} m/s {turn} °/s"))
+            let unit = look.caps.glyphs.turn_unit();
+            (format!("{speed} m/s, turn {turn} {unit}"), format!("{speed} m/s {turn} {unit}"))
         }
         Drive::Velocity(velocity) => {
             let speed = text::number(velocity.norm(), 2);

@@ -16,6 +16,8 @@ use ratatui::layout::{Constraint, Layout, Rect};
 /// Width of the key of a parameter, and of its allowed values, columns.
 const KEY: usize = 20;
 const ALLOWED: usize = 26;
+/// Width of the default of a parameter, columns.
+const DEFAULT: usize = 18;
 /// Minimum width of a table of parameters, columns.
 const LEAST: usize = 60;
 /// The number of digits shown of a hash.
@@ -153,17 +155,30 @@ fn role(state: PluginState) -> Role {
     }
 }
 
-/// All about a file and its planners. A large screen has room for a line about each parameter, or for two parameters in
-/// a line.
+/// How much is said about a file.
+#[derive(Clone, Copy)]
+struct Form {
+    /// The parameters in a line.
+    tables: usize,
+    /// Whether the digest is written out and each parameter is explained.
+    is_full: bool,
+}
+
+/// All about a file and its planners. A large screen explains each parameter; with less room, each one has a line, or two
+/// share one.
 fn about(look: &Look, area: Rect, plugin: &Plugin<'_>) -> Vec<Parts> {
     let (columns, height) =
         (usize::from(area.width).saturating_sub(3), usize::from(area.height).saturating_sub(2));
-    let most = if columns >= 2 * LEAST { 2 } else { 1 };
-    let in_tables = |tables: usize| about_in(look, plugin, (tables, columns));
-    (1..most).map(in_tables).find(|rows| rows.len() <= height).unwrap_or_else(|| in_tables(most))
+    let is_wide = columns >= 2 * LEAST;
+    let in_form = |form: Form| about_in(look, plugin, (form, columns));
+    let full = Form { tables: 1, is_full: true };
+    let lines = Form { is_full: false, ..full };
+    let last = Form { tables: if is_wide { 2 } else { 1 }, ..lines };
+    let longer = [full, lines].into_iter().filter(|form| is_wide || !form.is_full).map(in_form);
+    longer.into_iter().find(|rows| rows.len() <= height).unwrap_or_else(|| in_form(last))
 }
 
-fn about_in(look: &Look, plugin: &Plugin<'_>, (tables, columns): (usize, usize)) -> Vec<Parts> {
+fn about_in(look: &Look, plugin: &Plugin<'_>, (form, columns): (Form, usize)) -> Vec<Parts> {
     let wrapped = |role: Role, words: &str| -> Vec<Parts> {
         text::wrap(words, columns).into_iter().map(|line| vec![(role, format!(" {line}"))]).collect()
     };
@@ -176,6 +191,10 @@ fn about_in(look: &Look, plugin: &Plugin<'_>, (tables, columns): (usize, usize))
             (Role::Title, format!(" {} {}", info.id, info.version)),
             (Role::Dim, format!("  {}", abilities(info))),
         ]);
+        if form.is_full {
+            let (file, abi, sha256) = (plugin.file, &info.abi, &info.sha256);
+            rows.extend(wrapped(Role::Dim, &format!("{file}, ABI {abi}, SHA-256 {sha256}")));
+        }
         if let Some(sandbox) = &info.sandbox {
             let role = if *sandbox == Sandbox::Full { Role::Dim } else { Role::Warn };
             rows.extend(wrapped(role, &format!("sandbox: {sandbox}")));
@@ -184,7 +203,11 @@ fn about_in(look: &Look, plugin: &Plugin<'_>, (tables, columns): (usize, usize))
         if info.parameters.is_empty() {
             rows.extend(wrapped(Role::Dim, "no parameters"));
         }
-        rows.extend(parameter_rows(&info.parameters, tables, columns));
+        if form.is_full {
+            rows.extend(info.parameters.iter().flat_map(|info| explained(info, columns)));
+        } else {
+            rows.extend(parameter_rows(&info.parameters, form.tables, columns));
+        }
     }
     rows
 }
@@ -199,8 +222,33 @@ fn state_words(state: PluginState) -> &'static str {
 }
 
 fn abilities(info: &PlannerInfo) -> String {
-    let abilities = [(info.covers, "coverage"), (info.snapshots, "keeps its state")];
+    let abilities = [(info.covers, "plans scans of the floor"), (info.snapshots, "keeps its state")];
     abilities.iter().filter(|(has, _)| *has).map(|(_, word)| *word).collect::<Vec<_>>().join(", ")
+}
+
+/// A parameter with its allowed values, its default and its meaning, in as many lines as it needs.
+fn explained(info: &ParamInfo, columns: usize) -> Vec<Parts> {
+    let default = format!("default {}", parameter::default(&info.kind));
+    let front = [
+        format!("   {}", text::column(&info.key, KEY)),
+        format!(" {}", text::column(&parameter::range(info), ALLOWED)),
+        format!(" {}", text::column(&default, DEFAULT)),
+    ]
+    .concat();
+    let when = if info.live { "" } else { "Changes only while the robot is held" };
+    let meaning = [info.label.as_str(), info.help.as_str(), when];
+    let meaning = meaning.into_iter().filter(|words| !words.is_empty());
+    let meaning =
+        meaning.map(|words| format!("{}.", words.trim_end_matches('.'))).collect::<Vec<_>>().join(" ");
+    let indent = text::width(&front);
+    let lines = text::wrap(&meaning, columns.saturating_sub(indent + 1)).into_iter().enumerate();
+    let rows: Vec<Parts> = lines
+        .map(|(line, words)| {
+            let front = if line == 0 { front.clone() } else { " ".repeat(indent) };
+            vec![(Role::Text, front), (Role::Dim, format!(" {words}"))]
+        })
+        .collect();
+    if rows.is_empty() { vec![vec![(Role::Text, front)]] } else { rows }
 }
 
 /// The parameters in `tables` columns, to be read downwards.

@@ -4,6 +4,7 @@ use super::look::{Look, Parts, fill, marked, ranked};
 use super::text;
 use crate::model::{Pane, Run, history::SLOT_S};
 use crate::theme::Role;
+use mission::PositionTrust;
 use positioning::{Exclusion, Integrity, Residual};
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -129,13 +130,19 @@ fn error(look: &Look) -> (Role, String) {
     let run = look.run;
     let limit_m = limit_m(run);
     let error_m = run.position.error_m();
+    // While the ranges contradict each other, the error computed from them cannot be trusted.
+    let is_doubtful = run.standing.standing().position == PositionTrust::Alarmed;
     let role = match error_m {
-        _ if run.position.lost => Role::Crit,
+        _ if run.position.lost || is_doubtful => Role::Crit,
         Some(error_m) if error_m > 0.8 * limit_m => Role::Warn,
         _ => Role::Text,
     };
     let error = error_m.map_or_else(|| "-".into(), |error_m| format!("±{}", text::number(error_m, 2)));
-    let lost = if run.position.lost { "LOST " } else { "" };
+    let lost = match (run.position.lost, is_doubtful) {
+        (true, _) => "LOST ",
+        (false, true) => "! ",
+        (false, false) => "",
+    };
     let (error, limit) = match error_m.map(|error_m| beside_limit(error_m, limit_m, 2)) {
         Some([beside, limit]) if limit_m.is_finite() && run.position.protection.is_none() => {
             (format!("±{beside}"), limit)

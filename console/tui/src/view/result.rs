@@ -92,6 +92,10 @@ fn placed(model: &Model, area: Rect, result: &RunResult) -> Vec<(Pane, Rect)> {
     };
     let needed = missed::rows(model, area.width).max(3);
     let missed_rows = match size {
+        // Rows that the reasons for the selected area do not need go to the figures, if these are cut otherwise.
+        1 if pane != Pane::Missed && are_figures_cut(model, area, result, needed.min(MISSED[1])) => {
+            missed::rows_now(model, area.width).clamp(3, MISSED[1])
+        }
         _ if pane == Pane::Missed => needed.min(area.height.saturating_sub(ABOVE_MISSED)).max(3),
         2 => beside_plates(model, area, result, needed.min(MISSED[2])),
         size => needed.min(MISSED[size]),
@@ -111,6 +115,13 @@ fn placed(model: &Model, area: Rect, result: &RunResult) -> Vec<(Pane, Rect)> {
     let mut panes = vec![(if pane == Pane::Plates { pane } else { Pane::Map }, left), missed];
     panes.extend(side(model, right, (result, size)));
     panes
+}
+
+/// Whether the figures and the shares of the floor do not fit beside the map above so many rows for the missed areas.
+fn are_figures_cut(model: &Model, area: Rect, result: &RunResult, missed_rows: u16) -> bool {
+    let columns = SIDE[1] - 2;
+    let needed = figures::rows(model, result, columns) + floor::least(model, result, columns) + 2;
+    needed > area.height.saturating_sub(missed_rows)
 }
 
 /// The panes beside the map: the figures, the shares of the floor and, on a large screen, the plates.
@@ -222,7 +233,8 @@ fn title(model: &Model, result: &RunResult) -> String {
     let ending =
         result.summary.outcome.map_or_else(|| "CUT OFF".into(), |outcome| outcome.word().to_uppercase());
     let task = if model.ui.parts.without_scan { ", not a scan" } else { "" };
-    format!("Result  {ending}{task}")
+    let whole = if model.live.is_replay() { ", whole run" } else { "" };
+    format!("Result  {ending}{task}{whole}")
 }
 
 /// The role of the result's title.

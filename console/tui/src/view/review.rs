@@ -20,6 +20,8 @@ const ABOUT: u16 = 56;
 /// Columns from which the selected run is beside the list, and the width of its pane.
 const LARGE: u16 = 170;
 const DETAIL: u16 = 88;
+/// The fewest rows of the list above a comparison on a large screen, including the frame.
+const LEAST_LIST: u16 = 8;
 
 /// How much of the details of the selected run is visible.
 pub(crate) fn extent(look: &Look, area: Rect) -> Option<Extent> {
@@ -87,19 +89,30 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
 
 /// Below the list, a large screen shows the details of the selected run, or a comparison.
 fn large(look: &Look, frame: &mut Frame, area: Rect) {
+    let wanted = (look.model.review.runs(&look.model.home).len() as u16).saturating_add(3);
     if let Some(compared) = compared(look) {
-        let [list, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(BELOW.0)]).areas(area);
+        let details = glimpse(look);
+        let figures = if details.is_some() { compare::rows(look, compared) } else { BELOW.0 };
+        let list = if details.is_some() { wanted.max(LEAST_LIST).min(area.height / 3) } else { area.height };
+        let [list, below, rest] = Layout::vertical([
+            Constraint::Max(list),
+            Constraint::Length(figures),
+            Constraint::Fill(u16::from(details.is_some())),
+        ])
+        .areas(area);
         runs(look, frame, list);
+        if let Some(details) = details {
+            run_details::draw(look, frame, rest, details, true);
+        }
         return compare::draw(look, frame, below, compared);
     }
     let glimpse = glimpse(look);
     // The list keeps at least a third of the screen.
-    let wanted = (look.model.review.runs(&look.model.home).len() as u16).saturating_add(3);
     let list = if glimpse.is_some() { wanted.max(area.height / 3).min(area.height / 2) } else { area.height };
     let [list, below] = Layout::vertical([Constraint::Length(list), Constraint::Fill(1)]).areas(area);
     runs(look, frame, list);
     if let Some(glimpse) = glimpse {
-        run_details::draw(look, frame, below, glimpse);
+        run_details::draw(look, frame, below, glimpse, true);
     }
 }
 
@@ -162,6 +175,7 @@ fn mark(replay: Option<&Replay>, run: &PastRun) -> &'static str {
 /// The widths of the table columns.
 #[derive(Clone, Copy)]
 struct Widths {
+    began: past_run::Began,
     scenario: usize,
     planner: usize,
     time: usize,
@@ -170,10 +184,8 @@ struct Widths {
 
 /// Width for how a run ended, including one blank, columns.
 const END: usize = 10;
-/// Width of the mark, the date, the outcome and the coverage together, columns.
-const FIXED: usize = 3 + BEGAN + END + 7;
-/// Width for when a run began, including one blank, columns.
-const BEGAN: usize = 13;
+/// Width of the mark, the outcome and the coverage together, columns.
+const FIXED: usize = 3 + END + 7;
 
 /// The column widths; if space is short, the time is dropped first, then the planner.
 fn widths(listed: &[&PastRun], columns: usize) -> Widths {
@@ -181,15 +193,16 @@ fn widths(listed: &[&PastRun], columns: usize) -> Widths {
         listed.iter().map(|run| text::width(name(run))).max().unwrap_or(0).max(8) + 1
     };
     let time = if columns >= 100 { 9 } else { 0 };
-    let room = columns.saturating_sub(FIXED + time);
+    let began = past_run::Began::of(listed);
+    let room = columns.saturating_sub(FIXED + began.width() + time);
     let planner = if columns >= 70 { widest(|run| &run.planner).min(room / 3) } else { 0 };
     let scenario = widest(|run| &run.scenario).min(room.saturating_sub(planner));
-    Widths { scenario, planner, time, notes: room.saturating_sub(scenario + planner) }
+    Widths { began, scenario, planner, time, notes: room.saturating_sub(scenario + planner) }
 }
 
 fn head(widths: Widths) -> Parts {
     let words = [
-        text::column("   began UTC", 3 + BEGAN),
+        text::column("   began UTC", 3 + widths.began.width()),
         text::column("scenario", widths.scenario),
         text::column(if widths.planner > 0 { "planner" } else { "" }, widths.planner),
         text::column("end", END),
@@ -208,7 +221,7 @@ fn row(run: &PastRun, mark: &str, widths: Widths) -> Parts {
     let name = past_run::name(run);
     vec![
         (Role::Title, format!("{mark} ")),
-        (Role::Dim, text::column(&run.began, BEGAN)),
+        (Role::Dim, widths.began.text(run)),
         (Role::Text, text::column(name, widths.scenario)),
         (Role::Dim, text::column(&run.planner, widths.planner)),
         (role, text::column(&text::fit(&run.end, END - 1), END)),

@@ -1,20 +1,23 @@
 //! The planner in shadow, as shown in the planner pane: whether it is ready to take over, and how it differs from the
 //! active planner.
 
+use super::look::Look;
 use super::text;
 use crate::model::{Run, Shadow, shadow::GHOST_S};
 use crate::theme::Role;
 use mission::{Phase, event::READY_AFTER};
 
 /// The rows for the planner pane, each with its rank; empty without a planner in shadow.
-pub(super) fn rows(run: &Run, room: usize) -> Vec<(u8, &'static str, (Role, String))> {
+pub(super) fn rows(look: &Look, room: usize) -> Vec<(u8, &'static str, (Role, String))> {
+    let run = look.run;
     let Some(shadow) = &run.shadow else { return Vec::new() };
     let mut rows = vec![(2, "shadow", (Role::Ghost, text::wording(state(shadow, run), room)))];
     if let Some(by) = run.shadow_differences() {
         let speed = signed(by.speed_m_per_s, 2);
         let turn = signed(by.turn_rad_per_s.to_degrees(), 0);
         let (clearance, here) = (text::number(by.clearance_m, 2), text::number(by.here_m, 2));
-        let commands = [format!("{speed} m/s, turn {turn} °/s"), format!("{speed} m/s {turn} °/s")];
+        let unit = look.caps.glyphs.turn_unit();
+        let commands = [format!("{speed} m/s, turn {turn} {unit}"), format!("{speed} m/s {turn} {unit}")];
         let clear = [
             format!("{clearance} m in {GHOST_S} s, here {here} m"),
             format!("{clearance} m, here {here} m"),

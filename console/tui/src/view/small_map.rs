@@ -15,6 +15,8 @@ use world::{Point, World};
 const MARGIN: f64 = 1.06;
 /// Smallest area in which a tank is recognisable, columns and rows.
 const LEAST: (u16, u16) = (16, 6);
+/// Columns beside the tank for a legend that is wider than it.
+const LEGEND_MARGIN: u16 = 24;
 /// Rows of the map for each line of its legend.
 const ROWS_PER_LINE: u16 = 4;
 
@@ -44,6 +46,18 @@ impl<'a> SmallMap<'a> {
     fn swath_m(&self) -> f64 {
         let about = self.floor.and_then(|(run, _)| run.about.as_ref());
         about.map_or(0.0, |about| about.mission.swath_m)
+    }
+
+    /// The columns that the tank fills in a number of rows, with a margin for its legend.
+    pub(super) fn columns(&self, rows: u16) -> u16 {
+        let (low, high) = self.world.boundary.bounds();
+        // A cell is twice as high as it is wide.
+        let columns = 2.0 * f64::from(rows) * (high.x - low.x) / (high.y - low.y);
+        if columns.is_finite() {
+            (columns.ceil() as u16).saturating_add(LEGEND_MARGIN).max(LEAST.0)
+        } else {
+            LEAST.0
+        }
     }
 
     /// The same map with a marked place.

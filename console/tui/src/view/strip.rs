@@ -160,7 +160,9 @@ fn alarm(look: &Look, columns: usize) -> Vec<Line<'static>> {
         None => [vec![(Role::Text, " ".to_owned())], top::alarms(look.model, top::Counts::Worst)].concat(),
     };
     let used: usize = counts.iter().map(|(_, text)| text::width(text)).sum();
-    let mut words = text::wrap(&alarm.text, columns.saturating_sub(used + 1)).into_iter();
+    let cleared = if alarm.is_active() { "" } else { " (cleared)" };
+    let said = format!("{}{cleared}", alarm.text);
+    let mut words = text::wrap(&said, columns.saturating_sub(used + 1)).into_iter();
     let role = if counts.is_empty() { super::events::role(alarm.severity) } else { Role::Text };
     counts.push((role, format!(" {}", words.next().unwrap_or_default())));
     let indent = " ".repeat(used + 1);

@@ -23,7 +23,7 @@ pub(super) fn draw(look: &Look, survey: &Survey, frame: &mut Frame, area: Rect) 
     let (columns, rows) = (usize::from(inner.width), usize::from(inner.height));
     let mut lines = ranked(summary(look, survey, columns), rows);
     let room = rows.saturating_sub(lines.len());
-    lines.extend(found(survey, room, columns).into_iter().map(|row| look.line([(Role::Text, row)])));
+    lines.extend(list(survey, room, columns).into_iter().map(|row| look.line([(Role::Text, row)])));
     fill(frame, area, block, lines);
 }
 
@@ -53,8 +53,19 @@ fn summary(look: &Look, survey: &Survey, columns: usize) -> Vec<(u8, Line<'stati
     if beyond > 0 {
         lines.push(row(4, "left out", format!("{} beyond the tether", text::counted(beyond, "place"))));
     }
-    lines.push(row(3, "columns", format!("{} found", survey.columns.len())));
+    lines.push(row(3, "columns", columns_found(look, survey, room)));
     lines
+}
+
+/// The number of columns, and the key with which the operator turns to their list.
+fn columns_found(look: &Look, survey: &Survey, room: usize) -> String {
+    let found = format!("{} found", survey.columns.len());
+    let ui = &look.model.ui;
+    let can_turn = ui.panes().contains(&Pane::Coverage) && ui.pane != Pane::Coverage;
+    if survey.columns.is_empty() || !can_turn {
+        return found;
+    }
+    text::wording([look.keys(&format!("{found}  <next-pane> list")), found], room)
 }
 
 /// The number of frontiers. The one to which the robot drives is at the end of its way.
@@ -64,7 +75,11 @@ fn frontiers(look: &Look, survey: &Survey, room: usize) -> String {
         0 if survey.way.is_none() && !look.run.has_ended() => {
             text::wording(["not known yet".to_owned(), "-".to_owned()], room)
         }
-        0 => "none left".into(),
+        0 => {
+            let unseen =
+                survey.share.map(|share| format!("none left, {} % not seen", text::percent(1.0 - share)));
+            text::wording([unseen.unwrap_or_default(), "none left".to_owned()], room)
+        }
         n => n.to_string(),
     }
 }
@@ -89,7 +104,7 @@ pub(in crate::view) fn rest(path: &[Point], here: Point) -> &[Point] {
 }
 
 /// The columns, one in a row, as on the map; if they do not fit, the last row states how many are left out.
-fn found(survey: &Survey, rows: usize, width: usize) -> Vec<String> {
+fn list(survey: &Survey, rows: usize, width: usize) -> Vec<String> {
     let all = survey.columns.iter().enumerate();
     let mut lines: Vec<String> = all.take(rows).map(|(index, column)| row(index, column, width)).collect();
     let left_out = survey.columns.len() - lines.len();

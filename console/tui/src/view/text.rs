@@ -131,8 +131,11 @@ pub(crate) fn names(names: &[&str], columns: usize) -> String {
     wordings.into_iter().find(|words| width(words) <= columns).unwrap_or_else(|| format!("{}", names.len()))
 }
 
-/// A sentence starting with a capital letter and without its full stop.
+/// A sentence starting with a capital letter; a name such as `cell_m` keeps its small letter.
 pub(crate) fn capitalized(sentence: &str) -> String {
+    if sentence.split_whitespace().next().is_some_and(|first| first.contains('_')) {
+        return sentence.to_owned();
+    }
     let mut letters = sentence.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
@@ -160,10 +163,32 @@ pub(crate) fn width(text: &str) -> usize {
     Span::raw(text).width()
 }
 
-/// Wraps a sentence into lines of a given maximum width. A word that is too long for a line, such as a path, is divided.
+/// Units that stay in the line of their number.
+const UNITS: [&str; 14] =
+    ["m", "m²", "m²/min", "m/s", "mm", "s", "min", "h", "N", "%", "MB", "GB", "°/s", "deg/s"];
+
+/// The words of a sentence; a number and its unit are one word.
+fn words(sentence: &str) -> Vec<String> {
+    let mut words: Vec<String> = Vec::new();
+    for word in sentence.split_whitespace() {
+        let unit = word.trim_end_matches([',', '.', ';', ':', ')']);
+        let is_number = |before: &&mut String| before.ends_with(|letter: char| letter.is_ascii_digit());
+        match words.last_mut().filter(is_number).filter(|_| UNITS.contains(&unit)) {
+            Some(number) => {
+                number.push(' ');
+                number.push_str(word);
+            }
+            None => words.push(word.to_owned()),
+        }
+    }
+    words
+}
+
+/// Wraps a sentence into lines of a given maximum width. A word that is too long for a line, such as a path, is divided; a
+/// number and its unit are not.
 pub(crate) fn wrap(sentence: &str, columns: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    for word in sentence.split_whitespace().flat_map(|word| divided(word, columns)) {
+    for word in words(sentence).iter().flat_map(|word| divided(word, columns)) {
         match lines.last_mut() {
             Some(line) if width(line) + 1 + width(&word) < columns => {
                 line.push(' ');
@@ -181,6 +206,10 @@ fn divided(word: &str, columns: usize) -> Vec<String> {
     const MARKS: [char; 5] = ['/', '-', '_', ',', '='];
     let mut pieces: Vec<String> = Vec::new();
     let mut rest = word;
+    // A number and its unit are divided at their blank.
+    if let Some((number, unit)) = word.split_once(' ').filter(|_| width(word) > columns) {
+        return [divided(number, columns), divided(unit, columns)].concat();
+    }
     while width(rest) > columns && columns > 0 {
         let ends = rest.char_indices().map(|(at, letter)| at + letter.len_utf8());
         let ends: Vec<usize> = ends.take_while(|end| width(&rest[..*end]) <= columns).collect();
@@ -351,6 +380,16 @@ mod tests {
     fn words_are_wrapped_and_none_is_lost() {
         let lines = wrap("one planner drives at a time", 12);
         assert_eq!(lines, ["one planner", "drives at a", "time"]);
+    }
+
+    #[test]
+    fn a_number_and_its_unit_stay_in_one_line() {
+        assert_eq!(wrap("tether out 11.8 m, wrap", 18), ["tether out", "11.8 m, wrap"]);
+        assert_eq!(wrap("about 5 % (limit 3.0 m).", 19), ["about 5 % (limit", "3.0 m)."]);
+        assert_eq!(wrap("area 12 m", 9), ["area", "12 m"]);
+        assert_eq!(wrap("column C2 m", 10), ["column", "C2 m"], "a name may end in a digit");
+        assert_eq!(wrap("5 m", 2), ["5", "m"], "even a number and its unit may be too long");
+        assert_eq!([capitalized("cell_m 0.025"), capitalized("path 2 m")], ["cell_m 0.025", "Path 2 m"]);
     }
 
     #[test]

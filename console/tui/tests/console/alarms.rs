@@ -528,6 +528,22 @@ fn the_same_key_acknowledges_an_alarm_on_every_screen() {
 }
 
 #[test]
+fn the_position_error_is_marked_while_the_ranges_contradict_each_other() {
+    let mut screen = Screen::running();
+    screen.type_text("3");
+    for size in [(120, 36), (80, 24)] {
+        assert!(!shown(&screen, size).contains("! ±"));
+    }
+    hear(&mut screen, EventKind::RangesInconsistent { chi2: 250.0, degrees_of_freedom: 1 });
+    for size in [(120, 36), (80, 24)] {
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        assert!(shown(&screen, size).contains("! ±"), "{size:?}\n{}", shown(&screen, size));
+    }
+    hear(&mut screen, EventKind::RangesConsistent);
+    assert!(!shown(&screen, (80, 24)).contains("! ±"));
+}
+
+#[test]
 fn what_passes_within_its_delay_is_an_event_and_no_alarm() {
     let mut screen = Screen::running();
     let raised = |screen: &Screen, cause: Cause| screen.model.live.run.alarms.get(&cause).is_some();

@@ -151,6 +151,13 @@ fn a_breach_of_a_zone_is_a_critical_alarm_and_says_why_the_robot_is_held() {
     screen.type_text("4");
     let alarms = shown(&screen, (120, 36));
     assert!(alarms.contains("hull in zone no-go 1"), "{alarms}");
+    // The question says where the hull is, and what is safer.
+    screen.type_text("3:resume");
+    screen.press([Key::Enter]);
+    let asked = shown(&screen, (120, 36));
+    assert!(asked.contains("Resume?") && asked.contains("HULL IS IN A NO-GO ZONE"), "{asked}");
+    assert!(asked.contains("may get stuck there. Safer: Esc, then :return drives back"), "{asked}");
+    screen.press([Key::Esc]);
     // Whatever holds the robot in the zone, the remedy is the same.
     screen.type_text("3");
     let message = "planner apf finds no way out of zone no-go 1".to_owned();

@@ -50,7 +50,7 @@ fn reviewed(mut screen: Screen, size: (u16, u16)) -> Screen {
     screen.type_text("6");
     let selected = screen.model.review.run(&screen.model.home).unwrap();
     let key = (selected.name.clone(), selected.end.clone());
-    screen.send(Msg::Glimpsed(key, Ok(Box::new(Glimpse { run, summary, combined: None }))));
+    screen.send(Msg::Glimpsed(key, Ok(Box::new(Glimpse { run, summary, ..Glimpse::default() }))));
     screen
 }
 

@@ -122,10 +122,10 @@ pub(crate) fn found() -> Found {
 
 /// What is known about the first run in the list.
 fn glimpse(screen: &Screen) -> tui::model::Glimpse {
-    let run = tui::model::Run { log: tui::model::Log::default(), ..screen.model.live.run.clone() };
+    let run = screen.model.live.run.clone();
     let (_, result) = ended();
     let summary = Summary { holds: 2, obstacles_found: 1, ..*result.summary };
-    tui::model::Glimpse { run, summary: Some(Box::new(summary)), combined: None }
+    tui::model::Glimpse::of(run, Some(Box::new(summary)), None)
 }
 
 #[test]
@@ -311,7 +311,7 @@ fn a_result_with_an_instrument_states_its_readings_and_the_untestable_floor() {
     .unwrap();
     screen.hear(RunMsg::Closed(Box::new(RunResult { summary: Box::new(summary), ..closed })));
     let shown = text(&drawn(&screen.model, RICH, (200, 60)));
-    assert!(shown.contains("untst.") && shown.contains(" 17.3 "), "{shown}");
+    assert!(shown.contains("untestable") && shown.contains(" 17.3 "), "{shown}");
     assert!(shown.contains("Readings: 916948; indications: 53; deepest 7.2 ±0.6 mm"), "{shown}");
 }
 
@@ -436,6 +436,11 @@ fn what_if() {
     screen.press([tui::Key::Enter]);
     screen.hear(RunMsg::ForecastAt(choice("spiral-tangent"), 0.42));
     sizes::store("what_if", &mut screen, |_| false);
+    // In 7-bit characters, the arrow keys must not look like the keys for the speed.
+    screen.model.console.keys.spells_arrows = true;
+    let shown = text(&drawn(&screen.model, crate::fixture::ASCII, (120, 36)));
+    assert!(shown.contains("right left select") && !shown.contains("> < select"), "{shown}");
+    screen.model.console.keys.spells_arrows = false;
 }
 
 #[test]

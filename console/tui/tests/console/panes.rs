@@ -177,7 +177,7 @@ fn values(screen: &Screen, size: (u16, u16)) -> Vec<(&'static str, String)> {
         ("return path", "CLEAR"),
         ("speed", "m/s, "),
         ("command", "°/s"),
-        ("coverage", "scanned      "),
+        ("coverage", "passed over  "),
         ("map", "robot "),
     ];
     let line = |label: &str| {

@@ -129,11 +129,7 @@ fn the_list_of_runs() {
     let mut screen = Screen::idle();
     screen.send(Msg::Found(Box::new(found())));
     screen.type_text("6");
-    let known = tui::model::Glimpse {
-        run: replaying(false).model.live.run,
-        summary: Some(summary(0.969, 1931.0)),
-        combined: None,
-    };
+    let known = tui::model::Glimpse::of(replaying(false).model.live.run, Some(summary(0.969, 1931.0)), None);
     screen.send(Msg::Glimpsed((A.into(), "complete".into()), Ok(Box::new(known))));
     sizes::store("review", &mut screen, |part| part.contains('●'));
 }
@@ -144,7 +140,7 @@ fn a_large_screen_shows_missed_areas_and_curves_of_the_selected_run() {
     screen.send(Msg::Found(Box::new(found())));
     screen.type_text("6");
     let (run, summary) = (replaying(false).model.live.run, crate::panes::missed_summary());
-    let known = tui::model::Glimpse { run, summary: Some(Box::new(summary)), combined: None };
+    let known = tui::model::Glimpse::of(run, Some(Box::new(summary)), None);
     screen.send(Msg::Glimpsed((A.into(), "complete".into()), Ok(Box::new(known))));
     screen.send(Msg::Resize { width: 200, height: 60 });
     let shown = text(&drawn(&screen.model, RICH, (200, 60)));
@@ -165,6 +161,8 @@ fn two_runs_are_compared() {
     screen.type_text("D");
     store("difference", &mut screen);
     screen.type_text("6");
+    let known = tui::model::Glimpse::of(screen.model.live.run.clone(), Some(summary(0.969, 1931.0)), None);
+    screen.send(Msg::Glimpsed((A.into(), "complete".into()), Ok(Box::new(known))));
     sizes::store("compare", &mut screen, |part| part.contains('●'));
 }
 

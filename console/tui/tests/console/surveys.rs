@@ -152,6 +152,59 @@ fn the_layer_can_be_hidden() {
     assert!(!shown.contains("not seen") && !shown.contains("f   frontier"), "{shown}");
 }
 
+/// Turns to the pane of the survey, as an operator does.
+fn turn_to_survey(screen: &mut Screen) {
+    for _ in 0..6 {
+        if screen.model.ui.pane == tui::model::Pane::Coverage {
+            return;
+        }
+        screen.press([tui::Key::Tab]);
+    }
+    panic!("Tab does not lead to the pane of the survey");
+}
+
+#[test]
+fn tab_leads_to_the_list_of_the_columns_with_their_errors() {
+    for (width, height) in [(120, 36), (80, 24), (60, 16)] {
+        let mut screen = under_way();
+        screen.send(Msg::Resize { width, height });
+        let before = text(&drawn(&screen.model, PLAIN, (width, height)));
+        assert_eq!(before.contains("3 found  Tab list"), width == 120, "{before}");
+        turn_to_survey(&mut screen);
+        let shown = text(&drawn(&screen.model, PLAIN, (width, height)));
+        assert_eq!(shown.matches("±0.02").count(), 6, "{shown}");
+        insta::assert_snapshot!(format!("survey_list_{width}x{height}"), shown);
+    }
+}
+
+#[test]
+fn a_survey_promises_no_figures_and_has_no_planner_to_change() {
+    let mut screen = waiting();
+    screen.type_text("2");
+    screen.send(Msg::Resize { width: 120, height: 36 });
+    let shown = text(&drawn(&screen.model, PLAIN, (120, 36)));
+    assert!(shown.contains("A survey promises no figures") && !shown.contains("Promised"), "{shown}");
+    assert!(
+        shown.contains("A survey drives without a planner.") && !shown.contains("Not a scanning"),
+        "{shown}"
+    );
+    assert!(shown.contains("tether") && shown.contains("30.0 m") && !shown.contains("-     "), "{shown}");
+}
+
+#[test]
+fn the_alarm_about_the_reel_offers_what_a_survey_can_do() {
+    let mut screen = under_way();
+    let reel = mission::event::TetherAlarm::Reel { out_m: 25.0, reel_length_m: 30.0 };
+    let alarm = screen.mission.now(EventKind::TetherAlarmRaised { alarm: reel, reached: false });
+    screen.hear(RunMsg::Events(vec![alarm]));
+    let later = survey_only(screen.mission.drive(6));
+    screen.hear(RunMsg::Events(later));
+    screen.type_text("4");
+    let shown = text(&drawn(&screen.model, PLAIN, (200, 60)));
+    assert!(shown.contains("A survey chooses its ways") && shown.contains("End the mission"), "{shown}");
+    assert!(!shown.contains("certified plan") && !shown.contains("Change the planner"), "{shown}");
+}
+
 #[test]
 fn at_the_end_the_map_stays() {
     let mut screen = under_way();
@@ -161,4 +214,9 @@ fn at_the_end_the_map_stays() {
     assert!(survey.way.is_none() && survey.columns.len() == 3);
     let shown = text(&drawn(&screen.model, PLAIN, (120, 36)));
     assert!(shown.contains("58.3 %") && shown.contains("way        ended"), "{shown}");
+    let none_left = Explored { frontiers: Vec::new(), ..explored() };
+    let events = vec![screen.mission.now(EventKind::Explored(none_left))];
+    screen.hear(RunMsg::Events(events));
+    let shown = text(&drawn(&screen.model, PLAIN, (120, 36)));
+    assert!(shown.contains("frontiers  none left, 41.7 % not seen"), "{shown}");
 }

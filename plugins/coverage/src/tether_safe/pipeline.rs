@@ -133,7 +133,7 @@ impl<'a> Pipeline<'a> {
         if let (Some(next), Some(last)) = (hopeless.first(), hopeless.last()) {
             let [from_m, to_m] = [next, last].map(|draft| draft.estimate_m - least_m);
             let n = hopeless.len();
-            let more = format!("candidates not finished: {n} ({from_m:.0} to {to_m:.0} m longer)");
+            let more = format!("{n} more candidates not worked out ({from_m:.0} to {to_m:.0} m longer)");
             ctx.log(LogLevel::Debug, &more);
         }
         Ok(())

@@ -47,7 +47,7 @@ fn fields_of(look: &Look, alarm: &Alarm) -> Vec<Field> {
         let until = format!("until T+{}: {}", text::clock(shelf.until_s), shelf.reason);
         fields.push(("Shelved", signed(shelf.by.as_deref(), &until)));
     }
-    fields.extend(alarm.place.map(|place| ("Place", text::place(place))));
+    fields.extend(alarm.place.map(|place| ("Place", format!("{}, at its last event", text::place(place)))));
     if let Cause::Bias(station) = &alarm.cause {
         fields.extend(in_doubt(look, *station).map(|words| ("In doubt", words)));
     }

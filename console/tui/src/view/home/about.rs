@@ -80,7 +80,7 @@ fn run(look: &Look, frame: &mut Frame, area: Rect, run: &PastRun) {
     };
     let [figures, details] = Layout::vertical([Constraint::Fill(3), Constraint::Fill(2)]).areas(area);
     past_run::draw(look, frame, figures, run);
-    run_details::draw(look, frame, details, glimpse);
+    run_details::draw(look, frame, details, glimpse, false);
 }
 
 fn lines(look: &Look, entry: &ScenarioEntry, columns: usize) -> Vec<Line<'static>> {

@@ -7,13 +7,12 @@ use crate::model::home::HomeList;
 use crate::theme::Role;
 use crate::update::Rows;
 use crate::view::look::{Look, Parts};
-use crate::view::past_run::name;
+use crate::view::past_run::{Began, name};
 use crate::view::text;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
 /// Width of the columns, each with one space.
-const BEGAN: usize = 13;
 const END: usize = 11;
 const REACH: usize = 8;
 const VERIFIED: usize = 4;
@@ -27,6 +26,7 @@ const PLANNER: usize = 17;
 /// The widths of the columns that depend on the runs; 0 for a column that does not fit.
 #[derive(Clone, Copy)]
 struct Columns {
+    began: Began,
     name: usize,
     planner: usize,
     time: usize,
@@ -40,13 +40,14 @@ fn columns(listed: &[&PastRun], room: usize) -> Columns {
     let widest = |name: fn(&PastRun) -> &str| {
         listed.iter().map(|run| text::width(name(run))).max().unwrap_or(0).max(8) + 1
     };
-    let left = room.saturating_sub(1 + BEGAN + END + time + REACH + VERIFIED);
+    let began = Began::of(listed);
+    let left = room.saturating_sub(1 + began.width() + END + time + REACH + VERIFIED);
     let planner = widest(|run| &run.planner).min(PLANNER);
     let planner = if left.saturating_sub(planner) >= widest(name) { planner } else { 0 };
     // What the names do not need is for remarks, if it is enough for a few words.
     let remark = left.saturating_sub(planner + widest(name));
     let remark = if remark >= REMARK { remark } else { 0 };
-    Columns { name: left - planner - remark, planner, time, remark }
+    Columns { began, name: left - planner - remark, planner, time, remark }
 }
 
 /// The mark of a verified run.
@@ -93,7 +94,7 @@ fn heads(at: Columns) -> String {
     let planner = if at.planner > 0 { text::column("planner", at.planner) } else { String::new() };
     format!(
         " {}{}{planner}{}{}{:>REACH$}{}",
-        text::column("began", BEGAN),
+        text::column("began", at.began.width()),
         text::column("scenario", at.name),
         text::column("end", END),
         text::column("T+", at.time),
@@ -107,7 +108,7 @@ fn row(run: &PastRun, at: Columns) -> Parts {
     let took = if at.time < TIME.0 { took.strip_prefix("00:").unwrap_or(&took) } else { &took };
     let reach = run.reachable.map_or_else(|| "-".into(), |share| format!("{} %", text::percent(share)));
     vec![
-        (Role::Dim, text::column(if run.began.is_empty() { "-" } else { &run.began }, BEGAN)),
+        (Role::Dim, at.began.text(run)),
         (Role::Text, text::column(&text::fit(name(run), at.name.saturating_sub(1)), at.name)),
         (Role::Dim, text::column(&text::fit(&run.planner, at.planner.saturating_sub(1)), at.planner)),
         (role(run), text::column(end_word(run), END)),

@@ -101,11 +101,10 @@ fn row(look: &Look, entry: &ScenarioEntry, at: Columns, room: usize) -> Parts {
         return vec![name, (Role::Warn, text::clauses(&format!("INVALID  {why}"), left))];
     }
     let last = look.model.home.last_end(&entry.name);
-    // A mission that does not scan passes over floor, but that is not its result.
-    let scans = entry.task == "cover";
-    let reach = last
+    // The figures of the last run would look like those of the open mission.
+    let figures = last.filter(|_| !go::is_open_mission(look.model, entry));
+    let reach = figures
         .and_then(|run| run.reachable)
-        .filter(|_| scans)
         .map_or_else(|| "-".into(), |s| format!("{} %", text::percent(s)));
     let (role, end) = end(look, entry, last);
     vec![
@@ -115,7 +114,7 @@ fn row(look: &Look, entry: &ScenarioEntry, at: Columns, room: usize) -> Parts {
         (Role::Dim, text::column(&text::fit(&entry.planner, at.planner.saturating_sub(1)), at.planner)),
         (role, text::column(&end, at.end)),
         (Role::Text, format!("{reach:>width$}", width = at.reach)),
-        (Role::Dim, format!("{:>width$}", age(look, last), width = at.age)),
+        (Role::Dim, format!("{:>width$}", age(look, figures), width = at.age)),
     ]
 }
 

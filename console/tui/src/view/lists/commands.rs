@@ -129,9 +129,18 @@ fn command_row(look: &Look, action: &Action, columns: u16) -> Row {
     vec![
         (Role::Key, text::column(action.name, name)),
         (role, text::column(&about_of(look, action), about)),
-        (Role::Key, text::column(&look.model.console.keys.text(action), KEYS)),
+        (Role::Key, text::column(&fitting_keys(&look.model.console.keys, action), KEYS)),
         (role, risk.into()),
     ]
+}
+
+/// The first keys of an action that fit whole, with a blank behind them.
+fn fitting_keys(keys: &Keymap, action: &Action) -> String {
+    let mut texts = keys.texts(action);
+    while texts.len() > 1 && text::width(&texts.join(" ")) >= KEYS {
+        texts.pop();
+    }
+    texts.join(" ")
 }
 
 /// What an action does; for Enter, on the screen that is shown.

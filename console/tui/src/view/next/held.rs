@@ -1,6 +1,6 @@
 //! The reason, the place and the end of a hold.
 
-use crate::model::{Cause, Model, Run};
+use crate::model::{Model, Run};
 use crate::view::text;
 use mission::{Hold, HoldReason, Phase, PositionTrust, Resumes};
 use vehicle::port::{LinkSeen, LinkState};
@@ -23,7 +23,7 @@ pub(super) fn clauses(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String>
         }
         (Some(trouble), _) => held_without_position(head, by, trouble),
         (None, Some(fault)) => held_without_planner(head, by, &fault.message),
-        (None, None) if is_in_zone(run) => held_in_zone(head, by),
+        (None, None) if run.is_in_zone() => held_in_zone(head, by),
         (None, None) => held_for_good(head, by),
     });
     if head == Head::NotConfirmed {
@@ -156,11 +156,6 @@ fn held_without_position(head: Head, by: &HoldReason, (trouble, needs): (&str, &
     };
     let planner = by.blames_planner().then(|| "<planner>: change planner.".to_owned());
     [state, needs.into()].into_iter().chain(planner).collect()
-}
-
-/// Whether the hull is in a no-go zone.
-fn is_in_zone(run: &Run) -> bool {
-    run.alarms.list().iter().any(|alarm| matches!(alarm.cause, Cause::Zone(_)) && alarm.is_active())
 }
 
 /// A hold while the hull is in a no-go zone. A planner may find no way out, so the remedy is the drive back.

@@ -20,20 +20,24 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let rows = usize::from(block.inner(area).height);
     let (bad, good): (Vec<&Check>, Vec<&Check>) = checks.iter().partition(|check| is_bad(check));
     let mut lines: Vec<Line> = bad.into_iter().flat_map(|check| bad_lines(look, check, columns)).collect();
-    let passed = good.iter().map(|check| {
-        if has_figure(check) { format!("{} {}", check.what, check.found) } else { check.what.clone() }
-    });
-    let passed: Vec<String> = passed.collect();
-    let full = text::wrap_items(&passed, columns, "   ");
-    // If the findings do not fit, only the names of the checks are shown.
-    let names: Vec<String> = good.iter().map(|check| check.what.clone()).collect();
+    // The checks without a figure are a sentence, those with one a table. If the figures do not fit, only the names of the
+    // checks are shown.
+    let (figures, names): (Vec<&Check>, Vec<&Check>) =
+        good.iter().copied().partition(|check| has_figure(check));
+    let figures: Vec<String> =
+        figures.into_iter().map(|check| format!("{} {}", check.what, check.found)).collect();
+    let full = [names_of(&names, columns), text::wrap_items(&figures, columns, "   ")].concat();
     let fits = lines.len() + full.len() <= rows;
-    let passed = if fits { full } else { text::wrap_items(&names, columns.saturating_sub(4), ", ") };
-    let first = |index: usize| if index == 0 && !fits { "ok: " } else { "" };
-    let passed =
-        passed.into_iter().enumerate().map(|(index, line)| (Role::Good, format!(" {}{line}", first(index))));
-    lines.extend(passed.map(|part| look.line([part])));
+    let passed = if fits { full } else { names_of(&good, columns) };
+    lines.extend(passed.into_iter().map(|line| look.line([(Role::Good, format!(" {line}"))])));
     fill(frame, area, block, lines);
+}
+
+/// The names of checks that passed, as a sentence in lines.
+fn names_of(checks: &[&Check], columns: usize) -> Vec<String> {
+    let names: Vec<String> = checks.iter().map(|check| check.what.clone()).collect();
+    let lines = text::wrap_items(&names, columns.saturating_sub(4), ", ").into_iter().enumerate();
+    lines.map(|(index, line)| format!("{}{line}", if index == 0 { "ok: " } else { "" })).collect()
 }
 
 /// The title with its counts, from the longest wording to the shortest: what blocks or warns is left out last.

@@ -24,11 +24,14 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let size = (usize::from(inner.width), usize::from(inner.height));
     let Some(left_out) = left_out else {
         let words = match look.run.planning.plan {
+            _ if look.run.is_survey() => "A survey leaves out what its tether and hull cannot reach.",
             _ if !look.run.covers() => "Not a scanning mission.",
             Some(_) => "Not known yet.",
             None => "No plan.",
         };
-        return fill(frame, area, block, vec![look.line([(Role::Dim, format!(" {words}"))])]);
+        let lines = text::wrap(words, size.0.saturating_sub(1)).into_iter();
+        let lines = lines.map(|line| look.line([(Role::Dim, format!(" {line}"))])).collect();
+        return fill(frame, area, block, lines);
     };
     let place = left_out.areas.iter().map(|area| text::width(&text::place(area.at))).max().unwrap_or(0);
     let mut rows: Vec<Parts> = left_out.areas.iter().map(|area| row(area, place, size.0)).collect();

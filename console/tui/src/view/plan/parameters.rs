@@ -17,6 +17,11 @@ const KEY: usize = 22;
 const VALUE: usize = 20;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
+    if look.run.is_survey() {
+        let block = look.pane(Pane::Parameters, "Parameters", "");
+        let line = look.line([(Role::Dim, " A survey drives without a planner.".into())]);
+        return fill(frame, area, block, vec![line]);
+    }
     let (changed, others) = parameters(look);
     let n = changed.len() + others.len();
     let state =

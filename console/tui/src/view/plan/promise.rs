@@ -25,10 +25,15 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let columns = usize::from(look.pane(Pane::Promise, "", "").inner(area).width);
     let widths = Widths::new(columns, second.as_ref());
     let note = if widths.limit > 0 { "limit" } else { "" };
-    let block = look.pane(Pane::Promise, "Promised figures", note);
+    let title = if look.run.is_survey() { "Limits" } else { "Promised figures" };
+    let block = look.pane(Pane::Promise, title, note);
     let Some(mission) = look.run.about.as_ref().map(|about| &about.mission) else {
         return fill(frame, area, block, Vec::new());
     };
+    if look.run.is_survey() {
+        let lines = of_survey(look, mission, columns).into_iter().map(|parts| look.line(parts)).collect();
+        return fill(frame, area, block, lines);
+    }
     let mut rows: Vec<Parts> =
         second.as_ref().map(|second| head(look, second, &widths)).into_iter().collect();
     let cell = |figure: Figure, estimate: Option<&Estimate>, (role, room): (Role, usize)| {
@@ -72,6 +77,23 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     along::draw(look, frame, below);
 }
 
+/// What a survey has instead of promised figures: the limits, with the figures as they are now.
+fn of_survey(look: &Look, mission: &MissionConfig, columns: usize) -> Vec<Parts> {
+    let widths = Widths::new(columns.max(WITH_LIMIT), None);
+    let is_waiting = *look.run.phase() == Phase::Waiting;
+    let limited = FIGURES.into_iter().filter_map(|figure| Some((figure, (figure.limit)(mission)?)));
+    let rows = limited.map(|(figure, limit)| {
+        let now = (figure.now)(look.run).filter(|_| !is_waiting);
+        let now = now.map_or_else(String::new, |now| text::wording(now, widths.first));
+        row(figure.label, &(Role::Text, now), None, &figure.said(limit), &widths)
+    });
+    let words = text::wrap(NO_PROMISE, columns.saturating_sub(2)).into_iter();
+    words.map(|words| vec![(Role::Text, format!(" {words}"))]).chain(rows).collect()
+}
+
+/// Why a survey has no promised figures.
+const NO_PROMISE: &str = "A survey promises no figures; it keeps to these limits.";
+
 /// A figure with a limit, as it is now.
 pub(in crate::view) struct Watched {
     pub label: &'static str,
@@ -109,6 +131,9 @@ fn second<'a>(look: &Look<'a>) -> Option<Second<'a>> {
 
 /// The figures that fit into a line: those beyond their limits, then the others in table order.
 pub(super) fn in_a_line(look: &Look, columns: usize) -> String {
+    if look.run.is_survey() {
+        return NO_PROMISE.into();
+    }
     let Some(estimate) = look.model.live.promised() else { return "Estimate not known yet.".into() };
     let mission = look.run.about.as_ref().map(|about| &about.mission);
     let mut figures: Vec<(bool, String)> = Vec::new();
@@ -320,10 +345,7 @@ const FIGURES: [Figure; 10] = [
             Some(Found { note: on, at, ..Found::of(tether.wrap_max.value.to_degrees()) })
         },
         limit: |m| Some(m.tether.as_ref()?.limits.wrap_max_rad.to_degrees()),
-        now: |run| {
-            let most = run.tether.as_ref()?.largest().map_or(0.0, |contact| contact.wrap_rad.abs());
-            Some(alike(format!("{}°", text::number(most.to_degrees(), 0))))
-        },
+        now: |run| Some(alike(format!("{}°", text::number(run.tether.as_ref()?.largest_deg(), 0)))),
         ..figure("wrap", "w", "°", 0)
     },
     Figure {

@@ -25,7 +25,11 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         let line = look.line(one(in_a_line(look, columns)));
         return fill(frame, area, block, vec![line]);
     }
-    let [mut rows, ghost] = [about_plan(look, columns), ghost(look, columns)];
+    let height = usize::from(block.inner(area).height);
+    let [mut rows, ghost] = [about_plan(look, columns, true), ghost(look, columns)];
+    if rows.len() + ghost.len() > height {
+        rows = about_plan(look, columns, false);
+    }
     let room = usize::from(block.inner(area).height).saturating_sub(rows.len() + ghost.len());
     let why = text::first_lines(reasons(look, columns), room, columns);
     rows.extend(why.into_iter().map(|line| one((Role::Warn, line))));
@@ -36,14 +40,17 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
 /// The rows that the pane needs in a given width, with its frame.
 pub(super) fn rows(look: &Look, width: u16) -> u16 {
     let columns = usize::from(width).saturating_sub(3);
-    let rows = [about_plan(look, columns), ghost(look, columns)].concat().len();
+    let rows = [about_plan(look, columns, true), ghost(look, columns)].concat().len();
     (rows + reasons(look, columns).len() + 2).min(usize::from(u16::MAX)) as u16
 }
 
-/// How far the plan is made or what it achieves, its certificate and its planner.
-fn about_plan(look: &Look, columns: usize) -> Vec<Parts> {
+/// How far the plan is made or what it achieves, its certificate and its planner; `is_full` with what a re-scan does not
+/// request.
+fn about_plan(look: &Look, columns: usize, is_full: bool) -> Vec<Parts> {
     let mut rows = wrapped(progress(look), columns);
-    rows.extend(resumption(look).into_iter().flat_map(|words| wrapped((Role::Text, words), columns)));
+    rows.extend(
+        resumption(look, is_full).into_iter().flat_map(|words| wrapped((Role::Text, words), columns)),
+    );
     rows.extend(certificate(look, columns).map(one));
     if !look.run.is_survey() {
         rows.push(one((Role::Text, text::wording(planner(look), columns))));
@@ -131,10 +138,13 @@ fn ready(look: &Look, is_complete: bool) -> (Role, String) {
     let words = match look.model.live.left_out() {
         Some(left_out) => {
             let scanned = text::percent(left_out.scanned());
+            let smaller = match left_out.slivers.count {
+                0 => String::new(),
+                n => format!(" (+ {n} smaller)"),
+            };
             let areas = match left_out.areas.len() {
                 0 => String::new(),
-                1 => "; 1 area left out".into(),
-                n => format!("; {n} areas left out"),
+                n => format!("; {} left out{smaller}", text::counted(n, "area")),
             };
             format!("{state} Scans {scanned} % of the requested floor{areas}.")
         }
@@ -145,9 +155,9 @@ fn ready(look: &Look, is_complete: bool) -> (Role, String) {
 }
 
 /// Where a plan for a part of the floor begins to scan, beside its mark on the map.
-fn resumption(look: &Look) -> Option<String> {
+fn resumption(look: &Look, is_full: bool) -> Option<String> {
     let begins = confirm::begins(look.model)?;
-    let of_rescan = look.model.live.is_rescan();
+    let of_rescan = is_full && look.model.live.is_rescan();
     let not_requested = " Missed areas that are small or out of reach are not requested.";
     Some(format!("R {begins}{}", if of_rescan { not_requested } else { "" }))
 }

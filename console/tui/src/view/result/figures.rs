@@ -65,7 +65,7 @@ fn lines(model: &Model, result: &RunResult, columns: usize) -> Vec<Parts> {
     // On a narrower screen, the shares of the floor have the line about the plate.
     lines.extend(plates::worst(model, columns).filter(|_| columns >= WORST));
     lines.extend(worst(result, columns));
-    if model.live.is_replay() && model.live.plans.estimate.is_none() {
+    if model.live.is_replay() && model.live.plans.estimate.is_none() && !model.live.run.is_survey() {
         lines.extend(wrapped(
             Role::Dim,
             "No predictions: a run does not keep those that were made before it.",
@@ -138,14 +138,17 @@ fn figures(model: &Model, result: &RunResult) -> Vec<Figure> {
     let promised_m = promised.map(|p| p.length_m);
     let trail = run.trail.points();
     let driven_m = (trail.len() > 1).then(|| world::polyline::length_m(trail));
+    // A replay knows the path and the time moving only up to its moment, but the other figures are those of the whole run.
+    let is_replay = model.live.is_replay();
+    let driven_m = driven_m.filter(|_| !is_replay);
     // The estimate and the limit do not include the time during which the mission waits.
-    let moving_s = Some(run.clock.moving_s);
+    let (time, took_s, limit_s) = if is_replay {
+        ("mission time", summary.mission_time_s, None)
+    } else {
+        ("time moving", Some(run.clock.moving_s), mission.map(|mission| mission.time_limit_s))
+    };
     let mut figures = vec![
-        at_most(
-            "time moving",
-            text::clock,
-            [promised.map(|p| p.time_s), moving_s, mission.map(|mission| mission.time_limit_s)],
-        ),
+        at_most(time, text::clock, [promised.map(|p| p.time_s), took_s, limit_s]),
         match summary.path_length_m {
             Some(_) => at_most("path", metres(1), [promised_m, summary.path_length_m, None]),
             // Without a true position, the length is that of the estimated one.
@@ -290,9 +293,11 @@ fn dash() -> String {
 /// The holds, collisions, faults and alarms, in lines.
 fn trouble(model: &Model, result: &RunResult, columns: usize) -> Vec<Parts> {
     let summary = &result.summary;
-    let alarms = model.live.run.alarms.open().count();
+    // In a replay, the open alarms are those of its moment.
+    let alarms = (!model.live.is_replay()).then(|| model.live.run.alarms.open().count());
+    let alarms = alarms.map_or_else(String::new, |n| format!(", alarms open {n}"));
     let words = format!(
-        "Holds {}, {}planner faults {}, alarms open {alarms}.{}",
+        "Holds {}, {}planner faults {}{alarms}.{}",
         summary.holds,
         summary.collisions.map_or_else(String::new, |n| format!("collisions {n}, ")),
         summary.planner_faults,

@@ -48,7 +48,7 @@ fn bases(model: &Model, result: &RunResult, columns: usize) -> Vec<Parts> {
         rows.push(at.row("all, reach.", &all.floor.reachable));
         rows.push(at.row("all, whole", &all.floor.whole));
     }
-    let others = others(&account.whole.percent).filter(|_| at.others == 0);
+    let others = others(&account.whole.percent).filter(|_| at.others == [0; 3]);
     let others = others.into_iter().flat_map(|words| text::wrap(&words, columns));
     rows.extend(others.map(|line| vec![(Role::Text, format!(" {line}"))]));
     rows.extend(plates::worst(model, columns).filter(|_| columns < figures::WORST));
@@ -72,15 +72,17 @@ fn others(percent: &Percent) -> Option<String> {
 struct Columns {
     bar: usize,
     area: usize,
-    others: usize,
-    /// 0 also if the tool can test all floor.
-    untestable: usize,
+    /// The last one is 0 also if the tool can test all floor.
+    others: [usize; 3],
 }
 
-/// Width of the name of a floor, of a share, and of a share that is shown only if there is room.
+/// Width of the name of a floor, and of its scanned and unscanned share. In a mission that ended early, unscanned floor is not
+/// the same as missed floor.
 const NAME: usize = 12;
 const SHARE: usize = 8;
-const OTHER: usize = 7;
+const LEFT: usize = 12;
+/// Width of the shares that are shown only if there is room: unreachable floor, the margin, and floor that the tool cannot test.
+const OTHERS: [usize; 3] = [12, 7, 11];
 /// Width of an area.
 const AREA: usize = 11;
 /// Minimum and maximum width of a bar.
@@ -88,12 +90,14 @@ const BAR: (usize, usize) = (6, 24);
 
 impl Columns {
     fn of(room: usize, has_untestable: bool) -> Self {
-        let left = room.saturating_sub(1 + NAME + 2 * SHARE);
-        let count = if has_untestable { 3 } else { 2 };
-        let others = if left >= count * OTHER + AREA + BAR.0 { OTHER } else { 0 };
-        let area = if left >= count * others + AREA + BAR.0 { AREA } else { 0 };
-        let bar = left.saturating_sub(count * others + area).min(BAR.1);
-        Self { bar, area, others, untestable: if has_untestable { others } else { 0 } }
+        let left = room.saturating_sub(1 + NAME + SHARE + LEFT);
+        let [unreachable, margin, untestable] = OTHERS;
+        let others = [unreachable, margin, if has_untestable { untestable } else { 0 }];
+        let others = if left >= others.iter().sum::<usize>() + AREA + BAR.0 { others } else { [0; 3] };
+        let taken: usize = others.iter().sum();
+        let area = if left >= taken + AREA + BAR.0 { AREA } else { 0 };
+        let bar = left.saturating_sub(taken + area).min(BAR.1);
+        Self { bar, area, others }
     }
 
     fn head(&self) -> String {
@@ -102,10 +106,10 @@ impl Columns {
         [
             format!(" {}", text::column("% of", NAME + self.bar)),
             right("scanned", SHARE),
-            right("missed", SHARE),
-            right("unrch.", self.others),
-            right("margin", self.others),
-            right("untst.", self.untestable),
+            right("not scanned", LEFT),
+            right("unreachable", self.others[0]),
+            right("margin", self.others[1]),
+            right("untestable", self.others[2]),
             right("area", self.area),
         ]
         .concat()
@@ -121,10 +125,10 @@ impl Columns {
         let area = if self.area > 0 { format!("{area:>width$}", width = self.area) } else { String::new() };
         let rest = [
             number(percent.scanned, SHARE),
-            number(percent.missed, SHARE),
-            number(percent.unreachable, self.others),
-            number(percent.margin, self.others),
-            number(percent.untestable, self.untestable),
+            number(percent.missed, LEFT),
+            number(percent.unreachable, self.others[0]),
+            number(percent.margin, self.others[1]),
+            number(percent.untestable, self.others[2]),
             area,
         ];
         vec![

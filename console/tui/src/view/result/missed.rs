@@ -25,7 +25,19 @@ pub(super) fn rows(model: &Model, columns: u16) -> u16 {
     let listed = model.live.missed();
     let columns = usize::from(columns).saturating_sub(2);
     let why = listed.iter().map(|area| reasons(area, columns, usize::MAX).len()).max().unwrap_or(0);
-    (listed.len() + why + 3).min(usize::from(u16::MAX)) as u16
+    with_reasons(listed.len(), why)
+}
+
+/// The rows that the pane fills while the reasons for the selected area are shown, including the frame, at a width.
+pub(super) fn rows_now(model: &Model, columns: u16) -> u16 {
+    let listed = model.live.missed();
+    let columns = usize::from(columns).saturating_sub(2);
+    let selected = listed.get(model.ui.missed.min(listed.len().saturating_sub(1)));
+    with_reasons(listed.len(), selected.map_or(0, |area| reasons(area, columns, usize::MAX).len()))
+}
+
+fn with_reasons(listed: usize, why: usize) -> u16 {
+    (listed + why + 3).min(usize::from(u16::MAX)) as u16
 }
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
@@ -51,7 +63,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResul
     let notes =
         [format!("{place}{walk}  {next}"), format!("{place}{next}"), place.trim().to_owned(), String::new()];
     let key = look.pane_key(Pane::Missed);
-    let titles = [title(look, listed, true), title(look, listed, false)].map(|title| format!("{key}{title}"));
+    let titles = titles(look, listed).map(|title| format!("{key}{title}"));
     let title = text::wording(titles, columns.saturating_sub(4));
     let room = columns.saturating_sub(text::width(&title) + 8);
     let border = if has_focus { Role::Focus } else { Role::Border };
@@ -64,29 +76,32 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResul
     fill(frame, area, block, lines);
 }
 
-/// The missed areas and, apart from them, those that were not reached because the mission ended.
-fn title(look: &Look, listed: &[&Area<MissReason>], full: bool) -> String {
+/// The missed areas and, apart from them, those that were not reached because the mission ended; from the longest wording to
+/// the shortest.
+fn titles(look: &Look, listed: &[&Area<MissReason>]) -> [String; 4] {
     if look.model.live.floor().is_none() {
-        return "Missed: this mission does not scan".into();
+        return ["Missed: this mission does not scan", "Missed: not a scan", "Missed", ""].map(str::to_owned);
     }
     let is_ahead = |area: &&&Area<MissReason>| area.reason == MissReason::NotReached;
     let missed: Vec<_> = listed.iter().filter(|area| !is_ahead(area)).collect();
     let ahead: Vec<_> = listed.iter().filter(is_ahead).collect();
-    let sum = |areas: &[&&Area<MissReason>]| {
-        let total_m2: f64 = areas.iter().map(|area| area.area_m2).sum();
-        let plural = if areas.len() == 1 { "" } else { "s" };
-        format!("{} area{plural}, {} m²", areas.len(), text::number(total_m2, 2))
+    let total = |areas: &[&&Area<MissReason>]| text::number(areas.iter().map(|area| area.area_m2).sum(), 2);
+    let counted = |areas: &[&&Area<MissReason>], total: &str| match areas.len() {
+        0 => "no area".to_owned(),
+        n => format!("{}{total}", text::counted(n, "area")),
     };
-    let small = look.model.live.floor().filter(|_| full).map_or_else(String::new, small);
-    let missed = if missed.is_empty() { "no area".to_owned() } else { sum(&missed) };
-    let ahead = if ahead.is_empty() { String::new() } else { format!("; not reached: {}", sum(&ahead)) };
+    let sum = |areas: &[&&Area<MissReason>]| counted(areas, &format!(", {} m²", total(areas)));
     let others_m2 = look.model.live.not_requested_m2();
-    let others = if others_m2 > 0.0 && full {
-        format!("; not requested: {} m²", text::number(others_m2, 2))
-    } else {
-        String::new()
-    };
-    format!("Missed: {missed}{small}{ahead}{others}")
+    let others = (others_m2 > 0.0).then(|| format!("; not requested: {} m²", text::number(others_m2, 2)));
+    let not_reached =
+        |words: String| if ahead.is_empty() { String::new() } else { format!("; not reached: {words}") };
+    let small = look.model.live.floor().map_or_else(String::new, small);
+    [
+        format!("Missed: {}{small}{}{}", sum(&missed), not_reached(sum(&ahead)), others.unwrap_or_default()),
+        format!("Missed: {}{}", sum(&missed), not_reached(sum(&ahead))),
+        format!("Missed: {} m²{}", total(&missed), not_reached(format!("{} m²", total(&ahead)))),
+        format!("Missed: {}", counted(&missed, "")),
+    ]
 }
 
 /// An area; one that was not reached because the mission ended is dim, because nothing went wrong there.

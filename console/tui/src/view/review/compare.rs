@@ -47,6 +47,20 @@ const FIGURES: [Figure; 15] = [
     figure("turns", "", 0, |s| s.turns.map(|n| n as f64)),
 ];
 
+/// The rows that the comparison needs, including the frame.
+pub(super) fn rows(look: &Look, (_, other): (&Replay, &Other)) -> u16 {
+    let a = look.model.live.result.as_ref().map(|result| &*result.summary);
+    known(a, other.summary.as_deref()).count() as u16 + 4
+}
+
+/// The figures that one of the reports has.
+fn known<'a>(
+    a: Option<&'a Summary>,
+    b: Option<&'a Summary>,
+) -> impl Iterator<Item = &'static Figure> + use<'a> {
+    FIGURES.iter().filter(move |figure| [a, b].into_iter().flatten().any(|s| (figure.of)(s).is_some()))
+}
+
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, (replay, other): (&Replay, &Other)) {
     let note = look.keys("<compare-run>: another run (same run again: end)");
     let block = look.block(Role::Border, "Compare", &note);
@@ -56,9 +70,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, (replay, other): 
     let b = other.summary.as_deref();
     let width = columns.saturating_sub(LABEL + 1) / 3;
     let mut lines = vec![row(look, Role::Dim, "", ["A", "B", "A-B"].map(str::to_owned), width)];
-    let figures =
-        FIGURES.iter().filter(|figure| [a, b].into_iter().flatten().any(|s| (figure.of)(s).is_some()));
-    lines.extend(figures.take(rows).map(|figure| line(look, figure, (a, b), width)));
+    lines.extend(known(a, b).take(rows).map(|figure| line(look, figure, (a, b), width)));
     lines.push(look.line([(Role::Dim, format!(" {}", text::fit(&same(replay, other, (a, b)), columns)))]));
     fill(frame, area, block, lines);
 }
