@@ -2,8 +2,8 @@
 
 use super::alarms::rule::Context;
 use super::{
-    Alarms, History, Log, Planning, Position, Raster, Shadow, Tether, Trail, log::What, scanner::Scanner,
-    survey::Survey,
+    Alarms, FloorLevel, History, Log, Planning, Position, Raster, Shadow, Tether, Trail, log::What,
+    scanner::Scanner, survey::Survey,
 };
 use mission::{
     EventKind, FoldedStanding, MissionConfig, Phase, PlannerInfo, TaskConfig, WayBack, event::TetherAlarm,
@@ -36,6 +36,9 @@ pub struct Run {
     pub coverage: Option<Raster>,
     /// The forecast accuracy of fixes across the floor.
     pub accuracy: Option<AccuracyMap>,
+    /// The forecast protection level of fixes across the floor; `None` if the scenario states no risk.
+    #[serde(default)]
+    pub level: Option<FloorLevel>,
     /// Differs between forecasts and position error limits; a drawing of the forecast remains valid as long as it stays the
     /// same.
     #[serde(default)]
