@@ -1,7 +1,8 @@
 //! Floor whose guarantee was taken back, because a station was found wrong.
 
-use crate::{Fold, clock};
-use mission::{Event, EventKind};
+use crate::Fold;
+use mission::{Event, EventKind, clock, event::bias_text};
+use positioning::Estimated;
 use serde::{Deserialize, Serialize};
 use world::Point;
 
@@ -12,6 +13,9 @@ pub struct TakenBack {
     pub station: String,
     /// Length by which its ranges were too long, metres.
     pub bias_m: f64,
+    /// Standard deviation of this length, metres; absent in reports of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bias_sigma_m: Option<f64>,
     /// Mission time at which the bias may have begun, seconds.
     pub since_s: f64,
     /// Mission time at which the bias was detected, seconds.
@@ -26,10 +30,14 @@ pub struct TakenBack {
 
 impl std::fmt::Display for TakenBack {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { station, bias_m, since_s, until_s, area_m2, left_m2 } = self;
+        let Self { station, bias_m, bias_sigma_m, since_s, until_s, area_m2, left_m2 } = self;
+        let bias = match bias_sigma_m {
+            Some(sigma) => bias_text(&Estimated { value: *bias_m, sigma: *sigma }),
+            None => format!("{bias_m:+.2} m"),
+        };
         write!(
             f,
-            "{area_m2:.1} m² scanned from T+{} to T+{}: the ranges of station {station} were wrong by {bias_m:+.2} m",
+            "{area_m2:.1} m² scanned from T+{} to T+{}: the ranges of station {station} were wrong by {bias}",
             clock(*since_s),
             clock(*until_s),
         )?;

@@ -9,6 +9,7 @@ use crate::{
     floor::account,
     passes::Margins,
     protection::Protection,
+    ranging::Ranging,
     readings::{Survey, Way},
     scanned::Scanned,
     silence::{Silence, Step, Way as TrackedWay},
@@ -26,7 +27,10 @@ use mission::{
 };
 use nalgebra::Matrix2;
 use planner_api::PoseEstimate;
-use positioning::fix::{ellipse_95, position_covariance};
+use positioning::{
+    Estimated,
+    fix::{ellipse_95, position_covariance},
+};
 use world::{Obstacle, Point, Pose, StationId, Zone};
 
 /// Maximum number of listed faults.
@@ -44,6 +48,7 @@ pub struct Fold {
     accuracy: Accuracy,
     claimed: Claimed,
     protection: Protection,
+    ranging: Ranging,
     standing: FoldedStanding,
     turning: Turning,
     tethered: Option<Tethered>,
@@ -86,6 +91,7 @@ impl Fold {
         self.known.mission_time_s = Some(event.t_s);
         self.standing.apply(&event.kind);
         self.figures.apply(event);
+        self.ranging.apply(event.t_s, &event.kind);
         self.known.vehicle.iter_mut().for_each(|vehicle| vehicle.apply(&event.kind));
         match &event.kind {
             EventKind::RunOpened(run) => self.open(run),
@@ -139,7 +145,7 @@ impl Fold {
             EventKind::ParametersChanged { choice, .. } => self.set_parameters(choice),
             EventKind::ZoneDrawn { zone } => self.draw_zone(zone, event.t_s),
             EventKind::StationBiased { station, bias_m, since_s, .. } => {
-                self.take_back(*station, bias_m.value, *since_s, event.t_s);
+                self.take_back(*station, *bias_m, *since_s, event.t_s);
             }
             EventKind::ObstacleFound { obstacle } => {
                 self.known.obstacles_found += 1;
@@ -183,12 +189,21 @@ impl Fold {
         self.known.zones_drawn.push(drawn);
     }
 
-    fn take_back(&mut self, station: StationId, bias_m: f64, since_s: f64, until_s: f64) {
+    fn take_back(&mut self, station: StationId, bias_m: Estimated, since_s: f64, until_s: f64) {
         let Some((run, scanned)) = self.run.as_ref().zip(self.scanned.as_mut()) else { return };
         let found = run.world.stations.iter().find(|other| other.id == station);
         let station = found.map_or_else(|| station.0.to_string(), |found| found.name.clone());
         let area_m2 = scanned.take_back(since_s);
-        self.known.taken_back.push(TakenBack { station, bias_m, since_s, until_s, area_m2, left_m2: None });
+        let (bias_m, bias_sigma_m) = (bias_m.value, Some(bias_m.sigma));
+        self.known.taken_back.push(TakenBack {
+            station,
+            bias_m,
+            bias_sigma_m,
+            since_s,
+            until_s,
+            area_m2,
+            left_m2: None,
+        });
     }
 
     fn note_fault(&mut self, t_s: f64, whose: &str, message: &str) {
@@ -302,10 +317,10 @@ impl Fold {
             tether: self.tether(),
             explored: self.map.as_ref().map(|map| map.explored),
             tracking: self.tracker.as_ref().and_then(Tracker::tracking),
-            accuracy: self.claimed.statement(self.scan_limit_m()).map(|accuracy| summary::Accuracy {
-                protection: self.protection.statement(self.is_guaranteed_by_protection()),
-                ..accuracy
-            }),
+            accuracy: self
+                .claimed
+                .statement(self.scan_limit_m())
+                .map(|accuracy| summary::Accuracy { protection: self.protection_statement(), ..accuracy }),
             extremes: self.extremes(),
             readings: self
                 .survey
@@ -314,8 +329,18 @@ impl Fold {
                 .map(|(survey, scanned)| survey.summary(scanned.believed().floor())),
             positioning: self.accuracy.positioning(self.known.mission_time_s.unwrap_or(0.0)),
             taken_back: self.still_in_doubt(),
+            calibration: self.ranging.calibration(),
+            clocks: self.ranging.clocks(),
+            pulse_tests: self.ranging.pulse_tests().to_vec(),
             ..self.known.clone()
         }
+    }
+
+    /// The protection levels, with the risk for which they were computed.
+    fn protection_statement(&self) -> Option<summary::Protection> {
+        let risk = self.run.as_ref().and_then(|run| run.mission.locating.risk);
+        let statement = self.protection.statement(self.is_guaranteed_by_protection())?;
+        Some(summary::Protection { risk, ..statement })
     }
 
     /// The floor whose guarantee was taken back, with the part that no later pass guarantees.
@@ -440,6 +465,8 @@ impl Fold {
 
     fn open(&mut self, run: &RunOpened) {
         self.run = Some(Box::new(run.clone()));
+        let session = run.mission.locating.session.unwrap_or_default();
+        self.ranging = Ranging::new(&run.world.stations, session.sound_speed);
         self.known.scenario = Some(run.scenario.clone());
         self.known.seed = Some(run.seed);
         self.known.vehicle = run.vehicle.as_deref().map(VehicleRecord::new);

@@ -9,7 +9,6 @@
 //! [`Notes`] on a run and the [`Inspection`]. This crate uses no files, clocks, pages or pictures.
 
 mod accuracy;
-mod clock;
 mod doubt;
 mod drawn;
 pub mod estimate;
@@ -23,6 +22,7 @@ pub mod notes;
 mod overlap;
 mod passes;
 mod protection;
+mod ranging;
 mod readings;
 mod sampled;
 #[cfg(test)]
@@ -37,7 +37,6 @@ mod true_errors;
 mod turning;
 mod vehicle;
 
-pub use clock::clock;
 pub use doubt::{DoubtWatch, InDoubt, TakenBack};
 pub use drawn::DrawnZone;
 pub use estimate::Estimate;
@@ -51,9 +50,11 @@ pub use floor::{
 };
 pub use fold::Fold;
 pub use inspection::{Date, Inspection, is_placeholder, says_nothing};
+pub use mission::clock;
 pub use notes::Notes;
 pub use overlap::Overlap;
 pub use passes::Passes;
+pub use ranging::{Biased, Calibrated, Calibration, PulseRecord, StationClock, not_as_surveyed};
 pub use readings::{
     Detection, Detections, Finding, Imported, Judge, LOSS_CLASSES, PlateThickness, Reading, ReadingsSummary,
     Survey, Track, Whereabouts,

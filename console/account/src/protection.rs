@@ -41,6 +41,7 @@ impl Protection {
             max_m: metres(sorted.last().copied()),
             unprotected: (self.ticks - sorted.len()) as f64 / self.ticks as f64,
             guarantees,
+            risk: None,
         })
     }
 }

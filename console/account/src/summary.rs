@@ -1,7 +1,11 @@
 //! The figures of one run, as `run --json` prints them.
 
-use crate::{Account, Figure, TakenBack, VehicleRecord, drawn::DrawnZone, readings::ReadingsSummary};
+use crate::{
+    Account, Calibration, Figure, PulseRecord, StationClock, TakenBack, VehicleRecord, drawn::DrawnZone,
+    readings::ReadingsSummary,
+};
 use mission::{Check, Outcome, Parameters, Sandbox};
+use positioning::Risk;
 use serde::{Deserialize, Serialize};
 
 /// Version of the format of JSON reports on one run or several; increased if older readers cannot read the new format.
@@ -71,6 +75,15 @@ pub struct Summary {
     /// Floor whose guarantee was taken back, because a station was found wrong; in order of time.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub taken_back: Vec<TakenBack>,
+    /// The speed of sound and the wrong stations that the session calibration found; absent without it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<Calibration>,
+    /// The clocks of the stations; empty if they share one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub clocks: Vec<StationClock>,
+    /// The pulse tests of the stations, in order of time.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pulse_tests: Vec<PulseRecord>,
     /// The checks before the start, by the console and by the operator; empty for a run without an operator.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub checks: Vec<Check>,
@@ -237,6 +250,9 @@ pub struct Protection {
     pub unprotected: f64,
     /// Whether the level decides which floor is guaranteed; if not, the 95 % ellipse does.
     pub guarantees: bool,
+    /// The accepted risk and the assumed rate of faults; absent in reports of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub risk: Option<Risk>,
 }
 
 /// How closely the true path follows the preset path. "Near" means within [`Tracking::NEAR_M`].

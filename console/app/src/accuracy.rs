@@ -14,7 +14,7 @@ use flight::{
 use planner_host::PluginDirs;
 use positioning::{AccuracyMap, advise};
 use report::{
-    forecast::{CheckReport, ForecastReport, clearance_warning, mirror_warning},
+    forecast::{CheckReport, ForecastReport, clearance_warning, mirror_warning, risk_warning},
     print::{say, warn_line},
 };
 use scenario::Scenario;
@@ -44,12 +44,16 @@ pub(crate) fn accuracy(args: &AccuracyArgs, plugins: &PluginDirs) -> anyhow::Res
     Ok(ExitCode::from(COMPLETE))
 }
 
-/// Warns if the scan clearance is so small that the position error may exceed it, and if all stations lie on one line.
+/// Warns if the scan clearance is so small that the position error may exceed it, if all stations lie on one line, and if
+/// no protection level exists.
 pub(crate) fn warn_of_positions(scenario: &Scenario) {
     let (mission, drawing) = (&scenario.mission, scenario.sim.world.as_drawn());
-    for warning in
-        [clearance_warning(mission, &drawing), mirror_warning(mission, &drawing)].into_iter().flatten()
-    {
+    let warnings = [
+        clearance_warning(mission, &drawing),
+        mirror_warning(mission, &drawing),
+        risk_warning(mission, &drawing),
+    ];
+    for warning in warnings.into_iter().flatten() {
         warn_line(&format!("warning: {}: {warning}", scenario.shown_name));
     }
 }

@@ -227,7 +227,8 @@ fn show_progress(bar: &ProgressBar, events: &[Event], scenario: &Scenario) {
     for event in events {
         match event.kind {
             EventKind::PositionAwaited { ends_t_s, .. } => {
-                bar.set_prefix(format!("{}  HELD: position lost, ends at T+{ends_t_s:.0} s", scenario.name));
+                let ends = mission::clock(ends_t_s);
+                bar.set_prefix(format!("{}  HELD: position lost, ends at T+{ends}", scenario.name));
             }
             EventKind::Resumed => bar.set_prefix(scenario.name.clone()),
             _ => {}

@@ -82,6 +82,7 @@ pub(super) fn combined(
         earlier,
         floor: merged.floor,
         kinds: merged.kinds,
+        taken_back: merged.coverage.taken_back,
         scanned: merged.scanned,
         not_requested: merged.not_requested,
     }))

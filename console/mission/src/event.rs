@@ -27,7 +27,7 @@ pub use effort::Effort;
 pub use log_line::{LogLine, late_text};
 pub use measured::{Asked, Measured, ToolTrack};
 pub use offer::{OfferEnd, OfferStage, PlanScan, PlanScans};
-pub use pulse::{PulsePhase, change_text, pulse_text};
+pub use pulse::{PulsePhase, bias_text, change_text, pulse_text};
 pub use recorded::RecordedAnswers;
 pub(crate) use rounding::rounded_command;
 pub use run_opened::RunOpened;

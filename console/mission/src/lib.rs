@@ -11,6 +11,7 @@
 pub mod ask;
 mod channels;
 mod chart;
+mod clock;
 pub mod config;
 pub mod engine;
 pub mod event;
@@ -34,6 +35,7 @@ mod zone_cost;
 
 pub use ask::{Answer, Ask, AskId, Awaits, Given, Said, What, WorkerId};
 pub use channels::Channels;
+pub use clock::clock;
 pub use config::{
     BetterPlan, Guarantee, Locating, MissionConfig, OwnClocks, ScanConfig, TaskConfig, TetherConfig,
 };

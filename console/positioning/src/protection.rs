@@ -24,10 +24,10 @@ use world::{Point, Station, StationId};
 
 /// Mean time for which a station stays wrong before it is found and repaired, hours. The probability that a station is
 /// wrong at a given moment is the rate of faults times this time (an assumption).
-const FAULT_LASTS_H: f64 = 1.0;
+pub const FAULT_LASTS_H: f64 = 1.0;
 /// The largest share of positions beyond the level while a station is wrong. A fault lasts for many fixes, so a rare
 /// fault must not use up the whole risk at once.
-const MOST_WHILE_WRONG: f64 = 1e-3;
+pub const MOST_WHILE_WRONG: f64 = 1e-3;
 /// The solver either keeps all stations or leaves one out; each of these two cases has half of the risk.
 const SELECTIONS: f64 = 2.0;
 /// The number of stations above the number of unknowns that a level needs: one for the fault, and one to exclude the

@@ -40,7 +40,7 @@ pub use maps::Figure;
 pub use model::{Document, GateItem};
 pub use packed::stated_files;
 pub use readings::{Located, Readings};
-pub use run_part::{Driver, Files, PulseRecord, Recovered, RunPart, TetherPart};
+pub use run_part::{Driver, Files, Recovered, RunPart, TetherPart};
 pub use signed::{Revision, Signature, SignedRun};
 pub use survey::{ColumnPart, DrawnAs, Instead, MapPart, NotDrawn, NotFound};
 pub use task::TaskPart;

@@ -6,7 +6,7 @@ mod mirror;
 
 use crate::drawing::forecast::svg;
 use account::estimate::forecast;
-pub use checks::CheckReport;
+pub use checks::{CheckReport, risk_warning};
 pub use mirror::{Mirrored, line_of_stations};
 use mission::{MissionConfig, TaskConfig};
 use positioning::{Accuracy, AccuracyMap, Advice};

@@ -7,12 +7,14 @@ pub(crate) mod vehicle;
 
 pub use short::short;
 
+use crate::guarantee::{Rule, protection_text};
 use account::{
-    Account, Accuracy, Coverage, Extreme, Figure, Limit, MissReason, PlannerCalls, Positioning, Protection,
-    ReadingsSummary, Stops, Summary, Tether, Tracking,
+    Account, Accuracy, Calibration, Coverage, Extreme, Figure, Limit, MissReason, PlannerCalls, Positioning,
+    ReadingsSummary, Stops, Summary, Tether, Tracking, not_as_surveyed,
 };
 use mission::{Check, CheckOutcome, Outcome, Sandbox};
 use text::{Text, counted, percent};
+use world::coverage::percent_text;
 
 /// The summary as text: warnings first, then one labelled line for each figure, with units; every percentage states
 /// what it refers to.
@@ -31,7 +33,8 @@ pub fn human(run: &Summary) -> String {
     text.some("path", path(run));
     text.lines(run.vehicle.iter().flat_map(vehicle::lines));
     text.lines(run.coverage.iter().flat_map(coverage).map(|line| ("coverage", line)));
-    text.lines(run.floor.iter().flat_map(floor::lines));
+    let rule = Rule::of([run.accuracy.as_ref()]);
+    text.lines(run.floor.iter().flat_map(|floor| floor::lines(floor, rule)));
     text.lines(run.tracking.iter().flat_map(tracking).map(|line| ("tracking", line)));
     text.lines(run.accuracy.iter().flat_map(accuracy).map(|line| ("position", line)));
     text.lines(run.positioning.iter().flat_map(positioning).map(|line| ("true position", line)));
@@ -39,6 +42,7 @@ pub fn human(run: &Summary) -> String {
     text.some("readings", run.readings.as_ref().map(readings));
     text.some("tether", run.tether.as_ref().map(tether));
     text.some("sandbox", run.sandbox.as_ref());
+    text.lines(ranging(run));
     text.lines(run.taken_back.iter().map(|floor| ("in doubt", floor.to_string())));
     text.lines(run.zones_drawn.iter().map(|zone| ("zones drawn", zone.to_string())));
     text.lines(run.faults.iter().map(|fault| ("faults", fault.clone())));
@@ -112,6 +116,9 @@ fn warnings(run: &Summary) -> Vec<String> {
         Some(other) => found.push(format!("mission not complete: {}", other.word())),
     }
     found.extend(run.floor.as_ref().and_then(beyond_reel));
+    found.extend(not_as_surveyed(&run.pulse_tests));
+    let failed = run.pulse_tests.iter().filter(|test| !test.agrees);
+    found.extend(failed.map(|test| test.found.clone()));
     if let Some(n @ 1..) = run.collisions {
         found.push(counted(n, "collision"));
     }
@@ -217,8 +224,8 @@ fn coverage(coverage: &Coverage) -> Vec<String> {
     );
     let claims = coverage.by_truth.and_then(|truth| Some((truth.scanned_truly?, truth.guaranteed_truly)));
     lines.extend(claims.map(|(scanned, guaranteed)| {
-        let guaranteed =
-            guaranteed.map(|share| format!(" and {} of the floor claimed as guaranteed", percent(share)));
+        let guaranteed = guaranteed
+            .map(|share| format!(" and {} % of the floor claimed as guaranteed", percent_text(share, 2)));
         let (scanned, guaranteed) = (percent(scanned), guaranteed.unwrap_or_default());
         format!("truly scanned: {scanned} of the floor claimed as scanned{guaranteed}")
     }));
@@ -260,22 +267,25 @@ fn accuracy(accuracy: &Accuracy) -> Vec<String> {
             format_args!("{fixes} {}", if *fixes == 1 { "fix" } else { "fixes" })
         )
     }));
-    lines.extend(protection.iter().map(protected));
+    lines.extend(protection.iter().map(protection_text));
     lines
 }
 
-/// The protection levels, and whether they decide which floor is guaranteed.
-fn protected(protection: &Protection) -> String {
-    let Protection { p50_m, p95_m, max_m, unprotected, guarantees } = protection;
-    let metres = |level: &Option<f64>| level.map_or_else(|| "-".into(), |level_m| format!("{level_m:.3} m"));
-    format!(
-        "protection level {} median, {} p95, {} maximum; not protected in {} of ticks; floor is guaranteed by the {}",
-        metres(p50_m),
-        metres(p95_m),
-        metres(max_m),
-        percent(*unprotected),
-        if *guarantees { "protection level" } else { "95 % ellipse" }
-    )
+/// The speed of sound, wrong stations, clocks and pulse tests that agreed; the warnings contain the other tests.
+fn ranging(run: &Summary) -> Vec<(&'static str, String)> {
+    let mut lines: Vec<_> = run
+        .calibration
+        .iter()
+        .flat_map(Calibration::sentences)
+        .map(|sentence| ("calibration", sentence))
+        .collect();
+    let agreed = run.pulse_tests.iter().filter(|test| test.agrees);
+    lines.extend(agreed.map(|test| ("calibration", test.found.clone())));
+    if !run.clocks.is_empty() {
+        let clocks: Vec<String> = run.clocks.iter().map(ToString::to_string).collect();
+        lines.push(("calibration", format!("clocks, as lengths that sound travels: {}", clocks.join(", "))));
+    }
+    lines
 }
 
 fn positioning(positioning: &Positioning) -> Vec<String> {

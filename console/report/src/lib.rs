@@ -9,6 +9,7 @@ pub mod drawing;
 mod dxf;
 pub mod forecast;
 mod geojson;
+mod guarantee;
 pub mod human;
 mod identity;
 mod joined;

@@ -2,13 +2,14 @@
 
 pub use crate::past_run::PastRun;
 use crate::{
+    guarantee::Rule,
     human::{
         floor,
         text::{Text, overlap, percent},
     },
     joined::{joined, require_scans},
 };
-use account::{Account, Coverage, Summary};
+use account::{Account, Calibration, Coverage, Summary, not_as_surveyed};
 use serde::Serialize;
 use world::{CellRun, KindRun, coverage::runs_of};
 
@@ -100,7 +101,8 @@ impl Merged {
         );
         text.some("overlap", self.coverage.overlap.map(overlap));
         text.some("in doubt", self.coverage.taken_back.map(|floor| floor.to_string()));
-        text.lines(floor::lines(&self.floor));
+        let rule = Rule::of(self.runs.iter().map(|run| run.summary.accuracy.as_ref()));
+        text.lines(floor::lines(&self.floor, rule));
         text.0
     }
 }
@@ -121,6 +123,8 @@ impl MergedRun {
         file("recording", files.and_then(|logs| logs.recording.as_ref()), &self.recording_sha256);
         file("journal", files.and_then(|logs| logs.journal.as_ref()), &self.journal_sha256);
         text.some("WARNING", files.and_then(|logs| logs.error.as_ref()));
+        text.some("WARNING", not_as_surveyed(&self.summary.pulse_tests));
+        text.lines(self.summary.calibration.iter().flat_map(Calibration::sentences).map(|line| ("", line)));
         text.lines(self.summary.taken_back.iter().map(|floor| ("", format!("in doubt {floor}"))));
     }
 }

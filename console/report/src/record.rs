@@ -9,12 +9,9 @@ pub use stations::StationRecord;
 pub use tether::{Lay, TetherPoint, TetherRecord};
 
 use incidents::Incidents;
-use mission::{Event, EventKind, PlannerInfo, event::PulsePhase};
+use mission::{Event, EventKind, PlannerInfo};
 use planner_api::LegTag;
-use positioning::{
-    PulseError, PulseTest,
-    fix::{ellipse_95, position_covariance},
-};
+use positioning::fix::{ellipse_95, position_covariance};
 use stations::Stations;
 use world::{Point, Pose};
 
@@ -66,8 +63,6 @@ pub struct Record {
     pub planners: Vec<PlannerInfo>,
     truth: Option<(u64, Pose)>,
     stations: Stations,
-    /// The pulse tests of the stations.
-    pub pulses: Vec<(PulsePhase, Result<PulseTest, PulseError>)>,
     incidents: Incidents,
 }
 
@@ -134,8 +129,6 @@ impl Record {
                 self.planners.push((**info).clone());
             }
             EventKind::Fixed { fix } => self.stations.fix(fix),
-            EventKind::PulsesTested { phase, test } => self.pulses.push((*phase, Ok(test.clone()))),
-            EventKind::PulsesFailed { phase, why } => self.pulses.push((*phase, Err(*why))),
             EventKind::ClocksEstimated { offsets } => self.stations.clocks(offsets),
             _ => {}
         }

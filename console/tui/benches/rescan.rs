@@ -24,6 +24,7 @@ fn combination(cells: usize) -> Combination {
         earlier: vec!["before".into()],
         floor: serde_json::from_value(floor).expect("an account"),
         kinds: Vec::new(),
+        taken_back: None,
         scanned: vec![CellRun(0, (cells / 2) as u32)],
         not_requested: Vec::new(),
     }

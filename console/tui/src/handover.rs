@@ -156,7 +156,10 @@ fn done(model: &Model) -> Vec<String> {
         format!("In doubt: {}{at}", doubt.floor)
     });
     let moving = format!("Mission time {}, under way {}", clock(run.clock.t_s), clock(run.clock.moving_s));
-    task.map(str::to_owned).into_iter().chain(before).chain(scanned).chain(in_doubt).chain([moving]).collect()
+    let taken_back = model.live.together().and_then(|all| all.taken_back);
+    let regained = taken_back.map(|floor| format!("All runs: {floor}"));
+    let floor = before.into_iter().chain(scanned).chain(in_doubt).chain(regained);
+    task.map(str::to_owned).into_iter().chain(floor).chain([moving]).collect()
 }
 
 /// What the operator decided: the decisions in the journal, then the acknowledgements after the end of the mission, which

@@ -1,11 +1,13 @@
 //! Events as lines of text. The log on the screen, the recording and the command line use the same words.
 
 use super::{
-    Event, EventKind, OfferStage, PlanDropped, PlanMade, PlanTaken, SurveyWay, TetherAlarm, pulse_text,
+    Event, EventKind, OfferStage, PlanDropped, PlanMade, PlanTaken, SurveyWay, TetherAlarm, bias_text,
+    pulse_text,
     severity::{self, Severity},
 };
 use crate::engine::side;
 use crate::{
+    clock,
     order::{Check, CheckOutcome, Injection, Note, Noted, Order, RangeFault},
     outline,
     phase::{Outcome, StepTo},
@@ -67,10 +69,11 @@ impl Event {
             }
             EventKind::StationBiased { station, bias_m, since_s, is_corrected } => {
                 let name = station_text(*station, stations);
-                let value_m = bias_m.value;
                 let deed = if *is_corrected { "corrected" } else { "not used" };
                 let text = format!(
-                    "{name} {deed}: ranges wrong by {value_m:+.2} m; floor in doubt since T+{since_s:.0} s"
+                    "{name} {deed}: ranges wrong by {}; floor in doubt since T+{}",
+                    bias_text(bias_m),
+                    clock(*since_s)
                 );
                 line(Severity::Warn, "ae", text)
             }
@@ -269,12 +272,14 @@ fn awaited_text(limit_m: f64, ends_t_s: f64, has_stations: bool) -> String {
     if has_stations {
         format!(
             "waiting for ranges: the robot resumes when the 95 % position error is at most {limit_m:.2} m; otherwise, the \
-             time limit ends the mission at T+{ends_t_s:.0} s"
+             time limit ends the mission at T+{}",
+            clock(ends_t_s)
         )
     } else {
         format!(
             "the scenario has no stations, so the position error cannot fall to {limit_m:.2} m: the time limit ends the \
-             mission at T+{ends_t_s:.0} s; Ctrl-C ends it now"
+             mission at T+{}; Ctrl-C ends it now",
+            clock(ends_t_s)
         )
     }
 }

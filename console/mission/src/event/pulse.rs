@@ -1,6 +1,6 @@
-//! The pulse test of the stations.
+//! The errors of the stations in words: the pulse test, and biases.
 
-use positioning::{Integrity, PulseTest};
+use positioning::{Estimated, Integrity, PulseTest};
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
 use world::{Station, StationId};
@@ -35,10 +35,11 @@ pub fn pulse_text(phase: PulsePhase, test: &PulseTest, stations: &[Station]) -> 
         |id: StationId| stations.iter().find(|s| s.id == id).map_or("?", |station| station.name.as_str());
     let clocks = test.offsets_m.iter().map(|(_, offset)| offset.value.abs()).fold(0.0, f64::max);
     let mut text = format!(
-        "pulse test {}: {pulses} pulses, ranges too long by {:+.2} ± {:.2} %, clocks within {clocks:.2} m of sound",
+        "pulse test {}: {pulses} pulses, ranges {:.2} ± {:.2} % too {}, clocks within {clocks:.2} m of sound",
         phase.words(),
-        100.0 * scale.value,
+        100.0 * scale.value.abs(),
         200.0 * scale.sigma,
+        long_or_short(scale.value),
     );
     let (sender, receiver, off_m) = test.worst;
     let found = match (integrity, test.suspect) {
@@ -47,7 +48,8 @@ pub fn pulse_text(phase: PulsePhase, test: &PulseTest, stations: &[Station]) -> 
         }
         (Integrity::Alarm, None) => {
             let (sender, receiver) = (name(sender), name(receiver));
-            format!("; NOT AS SURVEYED: from {sender} to {receiver}, {off_m:+.2} m too long")
+            let (length_m, long) = (off_m.abs(), long_or_short(off_m));
+            format!("; NOT AS SURVEYED: from {sender} to {receiver}, {length_m:.2} m too {long}")
         }
         (Integrity::Untestable, _) => "; too few pulses to check the survey".into(),
         (Integrity::Ok | Integrity::Suspect, _) => "; as surveyed".into(),
@@ -61,9 +63,61 @@ pub fn pulse_text(phase: PulsePhase, test: &PulseTest, stations: &[Station]) -> 
 pub fn change_text(before: &PulseTest, test: &PulseTest) -> Option<String> {
     let change = test.change_since(before)?;
     Some(format!(
-        "THE SPEED OF SOUND CHANGED: ranges became {:+.2} ± {:.2} % longer since the test before; check the temperature, \
+        "THE SPEED OF SOUND CHANGED: ranges became {:.2} ± {:.2} % {}er since the test before; check the temperature, \
          and let the stations exchange pulses more often",
-        100.0 * change.value,
+        100.0 * change.value.abs(),
         200.0 * change.sigma,
+        long_or_short(change.value),
     ))
+}
+
+/// The length by which the ranges of a station are too long, metres, with its 95 % error.
+///
+/// ```
+/// use positioning::Estimated;
+/// let bias_m = Estimated { value: 0.17, sigma: 0.022 };
+/// assert_eq!(mission::event::bias_text(&bias_m), "+0.17 ± 0.04 m");
+/// ```
+pub fn bias_text(bias_m: &Estimated) -> String {
+    format!("{:+.2} ± {:.2} m", bias_m.value, 2.0 * bias_m.sigma)
+}
+
+/// The word for the sign of an error of a length.
+fn long_or_short(error: f64) -> &'static str {
+    if error < 0.0 { "short" } else { "long" }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use world::Point;
+
+    #[test]
+    fn a_length_is_too_long_or_too_short_and_never_negative() {
+        let station =
+            |id, name: &str| Station { id: StationId(id), name: name.into(), position: Point::origin() };
+        let stations = [station(1, "A"), station(2, "B")];
+        let test = |value, off_m| PulseTest {
+            scale: Estimated { value, sigma: 0.000_6 },
+            offsets_m: Vec::new(),
+            integrity: Integrity::Alarm,
+            suspect: None,
+            worst: (StationId(1), StationId(2), off_m),
+            pulses: 30,
+        };
+        let before = test(0.02, 0.37);
+        assert_eq!(
+            pulse_text(PulsePhase::Before, &before, &stations),
+            "pulse test before the run: 30 pulses, ranges 2.00 ± 0.12 % too long, clocks within 0.00 m of sound; \
+             NOT AS SURVEYED: from A to B, 0.37 m too long"
+        );
+        let after = test(-0.01, -0.37);
+        let text = pulse_text(PulsePhase::After, &after, &stations);
+        assert!(
+            text.contains("ranges 1.00 ± 0.12 % too short,") && text.ends_with("0.37 m too short"),
+            "{text}"
+        );
+        let change = change_text(&before, &after).expect("a change of 3 %");
+        assert!(change.contains("ranges became 3.00 ± 0.17 % shorter since"), "{change}");
+    }
 }

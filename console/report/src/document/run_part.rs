@@ -2,19 +2,15 @@
 
 use super::model::Document;
 use crate::{
+    guarantee::Rule,
     human::pre_flight,
     past_run::PastRun,
     record::{Incident, StationRecord},
 };
-use account::{Accuracy, Positioning, Summary, TakenBack, Tether};
-use mission::{
-    Outcome,
-    event::{PulsePhase, change_text, pulse_text},
-};
-use positioning::{Integrity, PulseError, PulseTest};
+use account::{Accuracy, Calibration, Positioning, PulseRecord, Summary, TakenBack, Tether, not_as_surveyed};
+use mission::Outcome;
 use serde::{Deserialize, Serialize};
 use std::fmt;
-use world::Station;
 
 /// The recovery of a run that its recording process did not close. The digests in the report identify the files of the run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -166,6 +162,9 @@ pub struct RunPart {
     pub tether: Option<TetherPart>,
     /// The fixes, station by station.
     pub stations: Vec<StationRecord>,
+    /// The speed of sound and the wrong stations that the session calibration found; absent without it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<Calibration>,
     /// The pulse tests of the stations.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pulse_tests: Vec<PulseRecord>,
@@ -173,15 +172,6 @@ pub struct RunPart {
     pub incidents: Vec<Incident>,
     /// The files of the run.
     pub files: Files,
-}
-
-/// A pulse test of the stations.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct PulseRecord {
-    /// The result as a sentence.
-    pub found: String,
-    /// Whether the pulses agree with the survey of the stations.
-    pub agrees: bool,
 }
 
 impl RunPart {
@@ -218,37 +208,12 @@ impl RunPart {
             taken_back: summary.taken_back.clone(),
             tether: tether(past, summary),
             stations: record.stations(),
-            pulse_tests: pulse_records(&record.pulses, &run.world.stations),
+            calibration: summary.calibration.clone(),
+            pulse_tests: summary.pulse_tests.clone(),
             incidents: record.incidents(),
             files: past.files.clone(),
         })
     }
-}
-
-/// The pulse tests as sentences, each with the change of the speed of sound since the usable one before it.
-fn pulse_records(
-    tests: &[(PulsePhase, Result<PulseTest, PulseError>)],
-    stations: &[Station],
-) -> Vec<PulseRecord> {
-    let mut before = None;
-    let mut record = |(phase, test): &(PulsePhase, Result<PulseTest, PulseError>)| {
-        let test = match test {
-            Ok(test) => test,
-            Err(why) => {
-                let found = format!("pulse test {} failed: {why}", phase.words());
-                return PulseRecord { found, agrees: false };
-            }
-        };
-        let mut found = pulse_text(*phase, test, stations);
-        if test.is_usable() {
-            let change = before.replace(test.clone()).and_then(|before| change_text(&before, test));
-            if let Some(change) = change {
-                found = format!("{found}; {change}");
-            }
-        }
-        PulseRecord { found, agrees: matches!(test.integrity, Integrity::Ok | Integrity::Suspect) }
-    };
-    tests.iter().map(&mut record).collect()
 }
 
 fn plainly(value: &mission::ParamValue) -> String {
@@ -283,6 +248,45 @@ fn tether(past: &PastRun, summary: &Summary) -> Option<TetherPart> {
         friction: tether.friction,
         reel_off_max_m: tether.reel_off_max_m,
         truth: summary.tether,
+    })
+}
+
+/// The rule by which the runs guarantee floor.
+pub(super) fn rule(document: &Document) -> Rule {
+    Rule::of(document.runs.iter().map(|run| run.accuracy.as_ref()))
+}
+
+/// The errors of the ranges that the session calibration of each run found, as sentences with full stops.
+pub(super) fn calibrations(document: &Document) -> impl Iterator<Item = String> {
+    document.runs.iter().filter_map(|run| {
+        let sentences = run.calibration.as_ref()?.sentences().join("; ");
+        let of = if document.runs.len() > 1 { format!(" of {}", run.run) } else { String::new() };
+        Some(format!("Session calibration{of}: {sentences}."))
+    })
+}
+
+/// Whether every run measured the speed of sound: by a session calibration, or by pulses that agree with the survey.
+pub(super) fn is_sound_known(document: &Document) -> bool {
+    let is_known = |run: &RunPart| {
+        let by_session = run.calibration.as_ref().is_some_and(|calibration| calibration.first.is_some());
+        by_session || run.pulse_tests.iter().any(|test| test.agrees)
+    };
+    !document.runs.is_empty() && document.runs.iter().all(is_known)
+}
+
+/// Whether the stations of every run sent pulses that agree with the survey.
+pub(super) fn is_pulse_tested(document: &Document) -> bool {
+    let is_tested =
+        |run: &RunPart| !run.pulse_tests.is_empty() && run.pulse_tests.iter().all(|test| test.agrees);
+    !document.runs.is_empty() && document.runs.iter().all(is_tested)
+}
+
+/// For each run whose stations were known not to be as surveyed: when, as a sentence.
+pub(super) fn survey_warnings(document: &Document) -> impl Iterator<Item = String> {
+    document.runs.iter().filter_map(|run| {
+        let warning = not_as_surveyed(&run.pulse_tests)?;
+        let of = if document.runs.len() > 1 { format!("run {}: ", run.run) } else { String::new() };
+        Some(format!("Warning: {of}{warning}."))
     })
 }
 

@@ -9,8 +9,9 @@ use crate::{
     record::{Record, TrackPoint},
 };
 use account::{Fold, Inspection, Logs};
-use mission::{Event, EventKind, RunOpened, TaskConfig};
-use planner_api::Reason;
+use mission::{Event, EventKind, Guarantee, Outcome, RunOpened, TaskConfig, event::PulsePhase};
+use planner_api::{PoseEstimate, Reason};
+use positioning::{PulseTest, Risk};
 use world::{Floor, Obstacle, ObstacleId, Point, Shape};
 
 /// Positions of two cells in the middle of the tank.
@@ -79,6 +80,128 @@ fn what_is_missing_is_printed_with_its_key_and_what_is_given_is_escaped() {
     for section in 1..=12 {
         assert!(html.contains(&format!(r#"<h2 id="s{section}">"#)), "section {section}");
     }
+}
+
+/// A complete report on a run whose floor is guaranteed by this rule.
+fn guaranteed_by(guarantee: Guarantee) -> (Document, String) {
+    let mut run = round_tank(0.1);
+    run.mission.scan.guarantee = guarantee;
+    run.mission.locating.risk = Some(Risk::default());
+    let mut past = past_of(run, &MISSED);
+    let covariance = nalgebra::Matrix3::from_diagonal_element(0.01);
+    let pose = PoseEstimate { position: Point::origin(), heading_rad: 0.0, covariance };
+    let events = [
+        EventKind::Protected { level_m: Some(0.25) },
+        EventKind::Estimated { pose },
+        EventKind::Ended { outcome: Outcome::Complete, reason: "done".into() },
+    ];
+    apply(&mut past, 1, events);
+    let document = Document::new(&[past], Context::default()).unwrap();
+    let page = html(&document);
+    (document, page)
+}
+
+fn apply(past: &mut PastRun, tick: u64, events: impl IntoIterator<Item = EventKind>) {
+    for kind in events {
+        let event = Event { tick, t_s: tick as f64, kind };
+        past.fold.apply(&event);
+        past.record.apply(&event);
+    }
+    past.summary = past.fold.summary();
+}
+
+/// The sentences of a page that contain a word, each once, in order.
+fn sentences_with(page: &str, words: &[&str]) -> String {
+    let text: String = page.split('<').filter_map(|part| part.split_once('>')).map(|(_, text)| text).fold(
+        String::new(),
+        |all, text| {
+            let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+            if text.is_empty() { all } else { all + &text + "\n" }
+        },
+    );
+    let mut found: Vec<&str> = Vec::new();
+    for line in text.lines().filter(|line| words.iter().any(|word| line.contains(word))) {
+        if !found.contains(&line) {
+            found.push(line);
+        }
+    }
+    found.join("\n")
+}
+
+#[test]
+fn every_definition_of_guaranteed_states_the_rule_that_was_used() {
+    let words = ["uaranteed", "rotection level", "one wrong station", "for every position"];
+    for (name, guarantee) in [("ellipse", Guarantee::Ellipse), ("protection", Guarantee::Protection)] {
+        let (_, page) = guaranteed_by(guarantee);
+        insta::assert_snapshot!(name, sentences_with(&page, &words));
+    }
+}
+
+#[test]
+fn the_row_of_the_protection_level_has_its_median_under_its_own_heading() {
+    let (document, _) = guaranteed_by(Guarantee::Ellipse);
+    let table = sections::floor::accuracy_statement(&document);
+    let heads: Vec<&str> = table.heads.iter().map(|head| head.text).collect();
+    assert_eq!(heads, ["Position", "Mean", "Median", "p95", "Worst", "Method"]);
+    let row: Vec<&str> = table.rows[1].cells.iter().filter_map(|cell| cell.value.text.as_deref()).collect();
+    assert_eq!(
+        row,
+        [
+            "Protection level",
+            "\u{2013}",
+            "25.0",
+            "25.0",
+            "25.0",
+            "covers one wrong station; accepted risk 1e-5 for each position, assuming 1e-4 faults per station and hour that \
+             last 1 h each; not protected in 0.0 % of the ticks"
+        ]
+    );
+    let plain = Document::new(&[past()], Context::default()).unwrap();
+    assert_eq!(
+        sections::floor::accuracy_statement(&plain).heads.len(),
+        5,
+        "without levels, only the mean is known"
+    );
+}
+
+#[test]
+fn the_speed_of_sound_and_a_failed_pulse_test_are_stated_in_text_page_and_json() {
+    let mut past = past_of(round_tank(0.1), &MISSED);
+    let estimated = |value, sigma| positioning::Estimated { value, sigma };
+    let test = PulseTest {
+        scale: estimated(0.02, 0.000_6),
+        offsets_m: Vec::new(),
+        integrity: positioning::Integrity::Alarm,
+        suspect: None,
+        worst: (world::StationId(1), world::StationId(2), -0.37),
+        pulses: 30,
+    };
+    let scale = estimated(0.0201, 0.000_3);
+    apply(
+        &mut past,
+        5,
+        [
+            EventKind::PulsesTested { phase: PulsePhase::Before, test },
+            EventKind::SessionCalibrated { scale, slip_correlation: None },
+        ],
+    );
+    let sound = "speed of sound taken as constant: ranges too long by +2.01 ± 0.06 % at T+00:00:05";
+    let warning = "the stations were not as surveyed from T+00:00:05 to the end: the stated position errors";
+    let text = crate::human(&past.summary);
+    assert!(text.contains(sound), "{text}");
+    assert!(text.contains(&format!("WARNING        {warning}")), "{text}");
+    assert!(text.contains("0.37 m too short"), "{text}");
+    let document = Document::new(&[past], Context::default()).unwrap();
+    let page = html(&document);
+    assert!(page.contains(&format!("Session calibration: {sound}.")), "section 8 and the accuracy statement");
+    assert!(
+        page.matches(warning).count() >= 3,
+        "first sheet, accuracy and limitations: {}",
+        page.matches(warning).count()
+    );
+    let json = serde_json::to_value(&document).unwrap();
+    assert_eq!(json["runs"][0]["calibration"]["last"]["scale"]["value"], 0.0201);
+    assert_eq!(json["runs"][0]["pulse_tests"][0]["contradicts"], true);
 }
 
 #[test]

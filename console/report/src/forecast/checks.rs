@@ -1,13 +1,14 @@
 //! How well the stations check each other: per place, over the planned session, and with one more station.
 
-use mission::MissionConfig;
+use mission::{Guarantee, MissionConfig};
 use positioning::{
-    AccuracyMap, Checks, Forecast, OneMore, Risk, SessionChecks,
+    AccuracyMap, Checks, Forecast, OneMore, Risk, SessionChecks, Unprotected,
     accuracy::checks::{Floor, NOT_SEPARABLE},
+    are_on_line,
 };
 use serde::Serialize;
 use std::fmt::Write;
-use world::{ObstacleMap, Point, World, polyline};
+use world::{ObstacleMap, Point, Station, World, polyline};
 
 /// Distance between the places of a session that are taken from a path, metres.
 const SESSION_STEP_M: f64 = 0.1;
@@ -22,6 +23,12 @@ pub struct CheckReport {
     risk: Risk,
     /// Whether the scenario states this risk; if not, it is the default.
     is_stated: bool,
+    /// Why no place is protected; absent if a place is protected, or if the reason differs from place to place.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unprotected: Option<Unprotected>,
+    /// Whether the stations have clocks of their own: the figures assume one clock.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    own_clocks: bool,
     /// Protection level of a fix in the middle of all places, metres; absent if half of the floor is not protected.
     median_level_m: Option<f64>,
     /// Protection level that 95 % of the floor does not exceed, metres; absent if more than 5 % is not protected.
@@ -70,6 +77,35 @@ impl Doubtful {
     }
 }
 
+/// The reason why no place can be protected; `None` if the stations allow levels.
+fn why_unprotected(risk: &Risk, stations: &[Station]) -> Option<Unprotected> {
+    if are_on_line(stations) {
+        return Some(Unprotected::OnOneLine);
+    }
+    risk.multipliers(stations.len(), false).is_none().then_some(Unprotected::TooRisky)
+}
+
+/// Warns if the scenario expects so many faults that no protection level exists.
+pub fn risk_warning(mission: &MissionConfig, drawing: &World) -> Option<String> {
+    let risk = mission.locating.risk?;
+    let stations = drawing.stations.len();
+    if stations < 2 || risk.multipliers(stations, false).is_some() {
+        return None;
+    }
+    let floor = match mission.scan.guarantee {
+        Guarantee::Protection => ", so no floor will be guaranteed (mission.guarantee = \"protection\")",
+        Guarantee::Ellipse => "",
+    };
+    Some(format!(
+        "no position will be protected{floor}: with {} faults per station and hour (ae.station_faults_per_hour) and \
+         {stations} stations, {} ({:e}, ae.integrity_risk); lower the rate of faults if you have evidence for it, or \
+         accept a larger risk",
+        risk.station_faults_per_hour,
+        Unprotected::TooRisky,
+        risk.integrity_risk
+    ))
+}
+
 fn metres(length: Option<f64>) -> String {
     length.map_or("none".into(), |m| format!("{m:.3} m"))
 }
@@ -104,6 +140,8 @@ impl CheckReport {
         Self {
             risk,
             is_stated: mission.locating.risk.is_some(),
+            unprotected: why_unprotected(&risk, &drawing.stations).filter(|_| floor.p95_level_m().is_none()),
+            own_clocks: mission.locating.clocks.is_some(),
             median_level_m: floor.median_level_m(),
             p95_level_m: floor.p95_level_m(),
             unprotected_share: floor.unprotected_share(),
@@ -129,11 +167,19 @@ impl CheckReport {
         );
         let _ = writeln!(
             text,
-            "level     median {}, 95 % of the floor {}; {:.1} % of the floor is not protected",
+            "level     median {}, 95 % of the floor {}; {:.1} % of the floor is not protected{}",
             metres(self.median_level_m),
             metres(self.p95_level_m),
-            percent(self.unprotected_share)
+            percent(self.unprotected_share),
+            self.unprotected.map_or_else(String::new, |why| format!(": {why}"))
         );
+        if self.own_clocks {
+            let _ = writeln!(
+                text,
+                "clocks    the stations have clocks of their own, but this forecast assumes one clock: a mission states a \
+                 level only for the pose, and calibrates no session"
+            );
+        }
         let _ = writeln!(
             text,
             "one fix   least detectable error of a station: median {}; on {:.1} % of the floor, a wrong station and a \
@@ -179,5 +225,67 @@ impl CheckReport {
             more.not_separable_share * 100.0,
             self.not_separable_share * 100.0
         )
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+    use crate::samples::round_tank;
+    use account::estimate::forecast;
+    use mission::OwnClocks;
+    use world::StationId;
+
+    /// A mission in a round tank with eight stations on the shell.
+    fn with_faults_per_hour(station_faults_per_hour: f64) -> (MissionConfig, World) {
+        let run = round_tank(0.1);
+        let (mut mission, mut world) = (run.mission, run.world);
+        mission.locating.risk = Some(Risk { station_faults_per_hour, ..Risk::default() });
+        let at = |k: u32| {
+            let angle = f64::from(k) * std::f64::consts::TAU / 8.0;
+            Point::new(5.0 * angle.cos(), 5.0 * angle.sin())
+        };
+        let station = |k| Station { id: StationId(k), name: format!("S{k}"), position: at(k) };
+        world.stations = (1..=8).map(station).collect();
+        (mission, world)
+    }
+
+    fn said(mission: &MissionConfig, world: &World) -> String {
+        let forecast = forecast(mission, world);
+        let risk = mission.locating.risk.unwrap();
+        let map = AccuracyMap::new(world, &forecast).with_checks(world, &forecast, &risk);
+        CheckReport::new(mission, world, (&map, &forecast), None).human(map.cell_m)
+    }
+
+    #[test]
+    fn a_rate_of_faults_that_allows_no_level_is_warned_of_and_is_the_stated_reason() {
+        let (mut mission, world) = with_faults_per_hour(0.01);
+        mission.scan.guarantee = Guarantee::Protection;
+        let warning = risk_warning(&mission, &world).unwrap();
+        assert_eq!(
+            warning,
+            "no position will be protected, so no floor will be guaranteed (mission.guarantee = \"protection\"): with 0.01 \
+             faults per station and hour (ae.station_faults_per_hour) and 8 stations, two wrong stations at once are more \
+             probable than the accepted risk (1e-5, ae.integrity_risk); lower the rate of faults if you have evidence for \
+             it, or accept a larger risk"
+        );
+        let text = said(&mission, &world);
+        assert!(
+            text.contains("100.0 % of the floor is not protected: two wrong stations at once are more"),
+            "{text}"
+        );
+        let (rare, world) = with_faults_per_hour(1e-4);
+        assert_eq!(risk_warning(&rare, &world), None);
+        let text = said(&rare, &world);
+        assert!(text.contains(" 0.0 % of the floor is not protected\n"), "{text}");
+    }
+
+    #[test]
+    fn a_forecast_for_stations_with_clocks_of_their_own_says_that_it_assumes_one_clock() {
+        let (mut mission, world) = with_faults_per_hour(1e-4);
+        assert!(!said(&mission, &world).contains("clocks    "));
+        mission.locating.clocks = Some(OwnClocks { offset_sigma_m: 0.3, drift_sigma_m_per_h: 0.0 });
+        assert!(said(&mission, &world).contains("clocks    the stations have clocks of their own"));
     }
 }

@@ -1,6 +1,7 @@
 //! The account of the floor as text.
 
 use super::text::counted;
+use crate::guarantee::Rule;
 use account::{Account, Area, Percent, PlateAccount, Shares, Slivers};
 use world::{Point, coverage::percent_text};
 
@@ -13,7 +14,7 @@ const MOST_PLATES: usize = 30;
 
 /// Labelled lines; every percentage states the floor to which it refers, and the percentages of one floor add up to
 /// 100.0 %.
-pub(crate) fn lines(account: &Account) -> Vec<(&'static str, String)> {
+pub(crate) fn lines(account: &Account, rule: Rule) -> Vec<(&'static str, String)> {
     let mut lines = vec![
         ("floor", format!("whole floor {}", shares(&account.whole))),
         ("floor", format!("reachable floor {}", shares(&account.reachable))),
@@ -22,7 +23,7 @@ pub(crate) fn lines(account: &Account) -> Vec<(&'static str, String)> {
     lines.extend(account.exact.map(|share| ("floor", exact(share))));
     lines.extend([("floor", critical_zone(account))]);
     lines.extend(arcs(account).into_iter().map(|line| ("floor", line)));
-    lines.push(("floor", basis(account)));
+    lines.push(("floor", basis(account, rule)));
     lines.extend(account.missed.iter().map(|area| ("missed", area.to_string())));
     lines.extend(slivers(&account.slivers).into_iter().map(|line| ("missed", line)));
     lines.extend(areas(&account.unreachable).into_iter().map(|line| ("unreachable", line)));
@@ -111,10 +112,12 @@ fn arcs(account: &Account) -> Option<String> {
     (!arcs.is_empty()).then(|| format!("critical zone not done: {listed}{more}"))
 }
 
-fn basis(account: &Account) -> String {
+fn basis(account: &Account, rule: Rule) -> String {
     let Account { cell_m, swath_m, position_limit_m, .. } = account;
     format!(
-        "cell {cell_m} m, swath {swath_m} m; counted as scanned where the 95 % position error was within {position_limit_m} m"
+        "cell {cell_m} m, swath {swath_m} m; counted as scanned where the 95 % position error was within {position_limit_m} m; \
+         guaranteed by the {}",
+        rule.measure()
     )
 }
 

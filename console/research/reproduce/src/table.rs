@@ -5,6 +5,8 @@ use std::fmt::Write;
 
 /// Maximum number of blocks without a seed that are named; the others are only counted.
 const MOST_NAMED: usize = 12;
+/// The size below which a number is printed as 0.
+const ZERO: f64 = 1e-15;
 
 /// Formats the rows as human-readable text: a block for each case and method, with its notes below it; then the claims
 /// that are not reproduced, and the rows that do not depend on a seed.
@@ -150,7 +152,8 @@ fn interval(ends: Option<[f64; 2]>) -> String {
 fn number(value: Option<f64>) -> String {
     match value {
         None => "-".into(),
-        Some(0.0) => "0".into(),
+        // Rounding errors of a bound that is zero.
+        Some(value) if value.abs() < ZERO => "0".into(),
         Some(value) if value.abs() < 1e-3 => format!("{value:.2e}"),
         Some(value) => format!("{value:.4}"),
     }
@@ -177,6 +180,14 @@ mod tests {
     #[test]
     fn rows_are_printed_in_blocks_with_their_notes_once() {
         insta::assert_snapshot!(table(&rows()));
+    }
+
+    #[test]
+    fn a_rounding_error_is_printed_as_zero_and_a_small_number_is_not() {
+        let block = Block { table: "t", case: "all", method: "ranges", note: "" };
+        let printed = |low| table(&[block.row("beyond_rate", 0.001, "", 1000).within(Some([low, 0.0013]))]);
+        assert!(printed(1.08e-19).contains(" 0 to 0.0013"), "{}", printed(1.08e-19));
+        assert!(printed(1.08e-9).contains(" 1.08e-9 to 0.0013"), "{}", printed(1.08e-9));
     }
 
     #[test]

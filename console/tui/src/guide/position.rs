@@ -68,7 +68,8 @@ pub(super) const PULSES: Guide = Guide {
     cause: "The pulses that the stations exchanged do not fit their surveyed places: a station is not where it was \
     surveyed, or its sensor or channel is faulty. Or too few pulses were heard for a result.",
     holds: "",
-    effect: "The pulses do not correct the ranges: the last test that agreed stays in use.",
+    effect: "The pulses of this test do not correct the ranges. If an earlier test agreed, it stays in use. Until a test \
+    agrees, position errors, protection levels and guaranteed floor do not count.",
     remedies: &[
         check("Check the place and the sensor of the station that the log names."),
         check("Exclude this station: `:exclude` and its name."),

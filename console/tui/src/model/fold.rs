@@ -9,7 +9,7 @@ mod shadow;
 mod tether;
 
 use super::alarms::rule;
-use super::{About, Cause, Change, Progress, Raster, Run, Withdrawn};
+use super::{About, Cause, Change, FloorLevel, Progress, Raster, Run, Withdrawn};
 use mission::{
     Event, EventKind, Hold, HoldReason, Order, Outcome, Phase, Severity, TaskConfig,
     event::{ChannelsJudged, RunOpened},
@@ -242,6 +242,7 @@ impl Run {
         let drawing = run.world.as_drawn();
         let accuracy = AccuracyMap::new(&drawing, &forecast).with_checks(&drawing, &forecast, &risk);
         self.accuracy_stamp = accuracy_stamp(&accuracy, run.mission.position_limit_m);
+        self.level = run.mission.locating.risk.map(|_| FloorLevel::of(&accuracy));
         self.accuracy = Some(accuracy);
         self.planning.choice = Some(run.mission.planner.clone());
     }

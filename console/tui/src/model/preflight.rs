@@ -248,7 +248,8 @@ impl Model {
                 None => (CheckOutcome::Passed, stations),
             },
         };
-        check("AE stations", outcome, found)
+        let level = self.live.run.level.map(|level| format!("; {}", level.words())).unwrap_or_default();
+        check("AE stations", outcome, found + &level)
     }
 
     fn terminal_check(&self) -> Check {

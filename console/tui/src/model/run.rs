@@ -2,7 +2,7 @@
 
 use super::alarms::rule::Context;
 use super::{
-    Alarms, Cause, History, Log, Planning, Position, Raster, Shadow, Tether, Trail, log::What,
+    Alarms, Cause, FloorLevel, History, Log, Planning, Position, Raster, Shadow, Tether, Trail, log::What,
     scanner::Scanner, survey::Survey,
 };
 use mission::{
@@ -36,6 +36,9 @@ pub struct Run {
     pub coverage: Option<Raster>,
     /// The forecast accuracy of fixes across the floor.
     pub accuracy: Option<AccuracyMap>,
+    /// The forecast protection level of fixes across the floor; `None` if the scenario states no risk.
+    #[serde(default)]
+    pub level: Option<FloorLevel>,
     /// Differs between forecasts and position error limits; a drawing of the forecast remains valid as long as it stays the
     /// same.
     #[serde(default)]

@@ -1,7 +1,7 @@
 //! The floor that a re-scan and the runs before it have scanned together.
 
 use super::Raster;
-use account::{Account, Shares};
+use account::{Account, Regained, Shares};
 use mission::{MissionConfig, TaskConfig};
 use serde::{Deserialize, Serialize};
 use world::{Cell, CellRun, Counts, KindRun, Point, coverage::regions::cells_within};
@@ -25,6 +25,9 @@ pub struct Combination {
     /// The kinds of the cells of this floor: obstacles found and zones drawn in any of the runs are applied.
     #[serde(default)]
     pub kinds: Vec<KindRun>,
+    /// The floor whose guarantee was taken back in any of the runs; `None` if no floor lost its guarantee.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub taken_back: Option<Regained>,
     /// The cells that any of the runs scanned.
     pub scanned: Vec<CellRun>,
     /// The cells that none of the runs had to scan.
@@ -39,6 +42,9 @@ pub struct Together {
     pub earlier: Vec<String>,
     /// The account of the floor over all runs.
     pub floor: Account,
+    /// The floor whose guarantee was taken back in any of the runs; `None` if no floor lost its guarantee.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub taken_back: Option<Regained>,
     /// The floor that any of the runs scanned; `None` if the re-scan scans no floor.
     pub raster: Option<Raster>,
     /// The cells that none of the runs had to scan.
@@ -49,9 +55,9 @@ pub struct Together {
 impl Together {
     /// Adds what the earlier runs found and scanned to the floor of the re-scan.
     pub fn new(combination: Combination, own: Option<&Raster>) -> Self {
-        let Combination { earlier, floor, kinds, scanned, not_requested } = combination;
+        let Combination { earlier, floor, kinds, taken_back, scanned, not_requested } = combination;
         let raster = own.map(|own| joined(own, &kinds, &scanned));
-        Self { earlier, floor, raster, not_requested }
+        Self { earlier, floor, taken_back, raster, not_requested }
     }
 
     /// For each cell of the floor, whether none of the runs had to scan it. Empty if the whole floor was requested.

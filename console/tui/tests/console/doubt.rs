@@ -13,8 +13,15 @@ use world::{Point, StationId};
 
 fn in_doubt() -> InDoubt {
     let station = "S2".into();
-    let floor =
-        TakenBack { station, bias_m: 0.15, since_s: 540.0, until_s: 633.0, area_m2: 41.87, left_m2: None };
+    let floor = TakenBack {
+        station,
+        bias_m: 0.15,
+        bias_sigma_m: Some(0.02),
+        since_s: 540.0,
+        until_s: 633.0,
+        area_m2: 41.87,
+        left_m2: None,
+    };
     InDoubt { floor, at: Some(Point::new(3.2, -1.5)) }
 }
 
@@ -84,7 +91,7 @@ fn the_result_lists_the_floor_in_doubt_and_how_to_scan_it_again() {
         let shown = shown(&mut screen, size);
         assert!(shown.contains("IN DOUBT: 41.9 m²"), "{size:?}\n{shown}");
         // Only at the smallest size does the pane have the rows for itself.
-        let whole = "IN DOUBT: 41.9 m² scanned from T+00:09:00 to T+00:10:33: the ranges of station S2 were wrong by +0.15 m, around \
+        let whole = "IN DOUBT: 41.9 m² scanned from T+00:09:00 to T+00:10:33: the ranges of station S2 were wrong by +0.15 ± 0.04 m, around \
                      3.20, -1.50 m. r: re-scan it.";
         assert!(size != SIZES[0] || flat(&shown).contains(whole), "{shown}");
     }

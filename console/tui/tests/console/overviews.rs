@@ -316,6 +316,34 @@ fn a_result_with_an_instrument_states_its_readings_and_the_untestable_floor() {
 }
 
 #[test]
+fn a_result_states_the_guaranteed_share_with_its_rule_and_the_protection_level() {
+    let (mut screen, closed) = ended();
+    let mut summary = missed_summary();
+    summary.floor.as_mut().unwrap().reachable.percent.guaranteed = Some(84.2);
+    let mut accuracy: account::Accuracy = serde_json::from_value(serde_json::json!({
+        "mean_m": 0.04, "p95_m": 0.06, "max_m": 0.1, "limit_m": 0.15, "over_limit": 0.0, "fixes": 900,
+        "stations_mean": 6.0, "stations_min": 6,
+        "protection": { "p50_m": 0.146, "p95_m": 0.193, "max_m": 0.273, "unprotected": 0.021, "guarantees": true },
+    }))
+    .unwrap();
+    let mut shown = |accuracy, size| {
+        let summary = Box::new(Summary { accuracy: Some(accuracy), ..summary.clone() });
+        screen.hear(RunMsg::Closed(Box::new(RunResult { summary, ..closed.clone() })));
+        text(&drawn(&screen.model, RICH, size))
+    };
+    for size in [(120, 36), (200, 60)] {
+        let shown = shown(accuracy, size);
+        let share = "Guaranteed by the protection level: 84.2 % of reachable floor.";
+        assert!(shown.contains(share), "{size:?}\n{shown}");
+        assert!(shown.contains("Protection level: median 0.15, largest 0.27 m; not"), "{size:?}\n{shown}");
+    }
+    let narrow = shown(accuracy, (80, 24));
+    assert!(narrow.contains("Guaranteed by the protection") && narrow.contains("84.2 %"), "{narrow}");
+    accuracy.protection.as_mut().unwrap().guarantees = false;
+    assert!(shown(accuracy, (120, 36)).contains("Guaranteed by the 95 % ellipse: 84.2 %"));
+}
+
+#[test]
 fn result_of_a_rescan() {
     let (mut screen, closed) = ended();
     let closed = RunResult { summary: Box::new(missed_summary()), ..closed };
@@ -337,12 +365,17 @@ fn result_of_a_rescan() {
         earlier,
         floor: all,
         kinds: Vec::new(),
+        taken_back: Some(account::Regained { area_m2: 20.8, again_m2: 20.8 }),
         scanned,
         not_requested: Vec::new(),
     }))));
     for size in [(60, 16), (80, 24), (120, 36), (200, 60)] {
         let shown = text(&drawn(&screen.model, RICH, size)).split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(shown.contains("99.1 %"), "the figure of all runs at {size:?}\n{shown}");
+        assert!(
+            size.0 < 80 || shown.contains("20.8"),
+            "the floor that lost its guarantee at {size:?}\n{shown}"
+        );
     }
     let scanned = screen.model.live.scanned().unwrap().reachable();
     assert!(scanned.missed == 0.0, "the map shows what the first run scanned: {scanned:?}");

@@ -18,7 +18,14 @@ fn as_rescan(mut screen: Screen, share: f64) -> Screen {
     let earlier = vec![BEFORE.to_owned()];
     screen.hear(RunMsg::Continues(Ok(Continued { runs: earlier.clone(), left_at: None })));
     let floor = missed_summary().floor.unwrap();
-    let read = Combination { earlier, floor, kinds: Vec::new(), scanned, not_requested: Vec::new() };
+    let read = Combination {
+        earlier,
+        floor,
+        kinds: Vec::new(),
+        taken_back: None,
+        scanned,
+        not_requested: Vec::new(),
+    };
     screen.hear(RunMsg::ScannedBefore(Ok(Box::new(read))));
     screen
 }
@@ -91,6 +98,7 @@ fn a_replay_of_a_re_scan_shows_what_was_scanned_before_it() {
         earlier: vec![BEFORE.into()],
         floor,
         kinds: Vec::new(),
+        taken_back: None,
         scanned,
         not_requested: Vec::new(),
     };

@@ -289,7 +289,7 @@ fn a_run_that_waits_for_its_position_shows_when_the_time_limit_ends_it() {
     hear(&mut screen, [held, EventKind::PositionAwaited { limit_m: 0.3, ends_t_s: 900.0 }, stood]);
     let line = state(&screen);
     assert!(line.contains("Resumes automatically when recovered."), "{line}");
-    assert!(line.contains("Otherwise, it ends at T+900 s."), "{line}");
+    assert!(line.contains("Otherwise, it ends at T+00:15:00."), "{line}");
     hear(&mut screen, [EventKind::Resumed]);
     assert!(!state(&screen).contains("T+900"), "{}", state(&screen));
 }

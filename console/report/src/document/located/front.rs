@@ -4,6 +4,7 @@ use super::super::{
     model::Document,
     page::{Page, Share, Table, Value, Verdict},
     readings::Located,
+    run_part::rule,
     words::number,
 };
 use account::clock;
@@ -55,10 +56,11 @@ fn verdict(document: &Document, located: &Located) -> Verdict {
     let floor = match located.tool_on_s {
         Some(on_s) => format!(
             "The tool was on for {}. While it was on and the position was known, it passed over {:.1} % of \
-             the whole floor; {:.1} % is guaranteed, allowing for the position error.",
+             the whole floor; {:.1} % is guaranteed, allowing for {}.",
             clock(on_s),
             document.floor.whole.percent.scanned,
-            document.floor.whole.percent.guaranteed.unwrap_or(0.0)
+            document.floor.whole.percent.guaranteed.unwrap_or(0.0),
+            rule(document).allowance()
         ),
         None => "No coverage is stated because the readings do not show when the tool was on.".to_owned(),
     };

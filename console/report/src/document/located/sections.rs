@@ -5,6 +5,7 @@ use super::super::{
     model::Document,
     page::{Block, Section, Table, Value, picture, section},
     readings::Located,
+    run_part::{calibrations, is_pulse_tested, is_sound_known, rule, survey_warnings},
     sections::{closing, floor, runs},
     words::{cm, number},
 };
@@ -65,7 +66,7 @@ fn scope(document: &Document, located: &Located) -> Vec<Block> {
                     floor.position_limit_m
                 ),
             ),
-            ("Guaranteed", "scanned for every position of the robot within its 95 % position error".into()),
+            ("Guaranteed", rule(document).definition().into()),
         ]),
     ]
 }
@@ -98,6 +99,7 @@ fn zone(document: &Document, located: &Located) -> Vec<Block> {
 
 fn accuracy(document: &Document, located: &Located) -> Vec<Block> {
     let mut blocks = vec![Block::Table(floor::accuracy_statement(document))];
+    blocks.extend(survey_warnings(document).chain(calibrations(document)).map(Block::Text));
     if located.tool_on_s.is_some() {
         let pictures = &document.pictures;
         blocks.push(Block::Pair(vec![picture(&pictures.accuracy), picture(&pictures.guaranteed)]));
@@ -152,19 +154,27 @@ fn limitations(document: &Document) -> Vec<Block> {
             "The positions in {runs} were computed from readings that other equipment recorded. This \
             program neither controlled nor observed the robot."
         ),
-        "The readings are used as they were exported: the clock, the stations and the state of the tool \
-         were not checked."
-            .to_owned(),
+        if is_pulse_tested(document) {
+            "The readings are used as they were exported: the clock of the readings and the state of the tool were not \
+             checked. Pulses between the stations checked their survey and their clocks (section 8)."
+        } else {
+            "The readings are used as they were exported: the clock, the stations and the state of the tool \
+             were not checked."
+        }
+        .to_owned(),
         "Only obstacles on the drawing are shown.".to_owned(),
         "\u{201c}Scanned\u{201d} does not mean that a defect would have been detected; that depends on the \
          instrument, its calibration and the surface."
             .to_owned(),
-        "The 95 % error is computed from the covariance; it does not include errors in the station survey, \
-         in the speed of sound, or in the tool's offset on the robot."
-            .to_owned(),
+        format!(
+            "The 95 % error is computed from the covariance; it does not include errors in the station survey,{} or in \
+             the tool's offset on the robot.",
+            if is_sound_known(document) { "" } else { " in the speed of sound," }
+        ),
         "Nothing here replaces the inspector's own assessment of completeness under the applicable code."
             .to_owned(),
     ];
+    items.extend(survey_warnings(document));
     if has_truth {
         items.push(
             "The readings contain true positions. If these come from a simulator, so do the readings."

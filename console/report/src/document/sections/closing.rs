@@ -5,7 +5,7 @@ use super::super::{
     packed,
     page::{Block, SignatureBlock, Table, Value},
     readings::Readings,
-    run_part::{RunPart, pulse_tests},
+    run_part::{RunPart, calibrations, is_pulse_tested, is_sound_known, pulse_tests, rule, survey_warnings},
     words::{cm, number},
 };
 
@@ -29,7 +29,7 @@ pub(in crate::document) fn equipment(document: &Document) -> Vec<Block> {
     equipment.extend(of_instrument.into_iter().filter(is_shown));
     equipment.extend([
         ("Stations: survey and pulse test", station_check(document)),
-        ("Speed of sound", Value::fact(facts.sound_speed.as_ref(), "sound_speed")),
+        ("Speed of sound", sound_speed(document)),
         ("Procedure", Value::fact(facts.procedure.as_ref(), "procedure")),
         ("Operator", Value::fact(facts.operator.as_ref(), "operator")),
     ]);
@@ -81,6 +81,19 @@ fn station_check(document: &Document) -> Value {
     stated.map(String::as_str).into_iter().chain(measured).collect::<Vec<_>>().join(". ").into()
 }
 
+/// The speed of sound: as stated, and as the runs found it from their ranges.
+fn sound_speed(document: &Document) -> Value {
+    let stated = document.inspection.sound_speed.as_ref();
+    let by_pulses = is_pulse_tested(document)
+        .then(|| "Measured by the pulse tests above; the ranges are corrected accordingly.".to_owned());
+    let measured = by_pulses.into_iter().chain(calibrations(document)).collect::<Vec<_>>().join(" ");
+    match stated {
+        _ if measured.is_empty() => Value::fact(stated, "sound_speed"),
+        Some(stated) => format!("{stated}. {measured}").into(),
+        None => Value { text: Some(measured), ..Value::fact(None, "sound_speed") },
+    }
+}
+
 /// The limitations of the report.
 pub(in crate::document) fn limitations(document: &Document) -> Vec<Block> {
     let floor = &document.floor;
@@ -101,12 +114,11 @@ pub(in crate::document) fn limitations(document: &Document) -> Vec<Block> {
             number(100.0 * floor.cell_m, 1),
             floor.swath_m
         ),
-        "\u{201c}Guaranteed\u{201d} allows for the position error given by the covariance, but not for errors \
-         in the heading, in the station survey, in the speed of sound, or in the tool's offset on the robot."
-            .to_owned(),
+        rule(document).limitation(is_sound_known(document)),
         "The critical zone is evaluated every 25 mm along the shell as drawn, in 15 layers of 5 mm."
             .to_owned(),
     ];
+    items.extend(survey_warnings(document));
     items.extend(of_scans.into_iter().filter(|_| document.is_to_scan));
     items.extend([
         "Found obstacles are shown where the robot estimated them to be; obstacles that it did not sense \

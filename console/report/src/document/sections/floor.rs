@@ -5,8 +5,11 @@ use super::super::{
     maps::{plate_bar, plate_legend},
     model::Document,
     page::{Block, Row, Table, Value, per_cent, picture},
+    run_part::{calibrations, rule, survey_warnings},
     words::{cm, number},
 };
+use crate::guarantee::{Rule, risk_text};
+use account::{Accuracy, Protection};
 use world::coverage::percent_text;
 
 /// Maximum number of listed arcs of the critical zone.
@@ -102,50 +105,37 @@ pub(in crate::document) fn zone(document: &Document) -> Vec<Block> {
     blocks
 }
 
-/// The accuracy of the position, run by run.
+/// The accuracy of the position, run by run. Only protection levels have a median, so the column of medians needs a run
+/// with levels.
 pub(in crate::document) fn accuracy_statement(document: &Document) -> Table {
-    let mut table = Table::new(
-        "Accuracy statement",
-        &[
-            ("Position", "", ""),
-            ("Mean", "cm", "r"),
-            ("p95", "cm", "r"),
-            ("Worst", "cm", "r"),
-            ("Method", "", ""),
-        ],
-    );
+    let has_levels = document.runs.iter().any(|run| run.accuracy.is_some_and(|a| a.protection.is_some()));
+    let mut columns = vec![
+        ("Position", "", ""),
+        ("Mean", "cm", "r"),
+        ("p95", "cm", "r"),
+        ("Worst", "cm", "r"),
+        ("Method", "", ""),
+    ];
+    if has_levels {
+        columns.insert(2, ("Median", "cm", "r"));
+    }
+    let mut table = Table::new("Accuracy statement", &columns);
+    let mut add = |what: String, [mean, median, p95, worst]: [Option<f64>; 4], how: String| {
+        let known = |length_m: Option<f64>| length_m.map_or_else(|| "\u{2013}".to_owned(), cm);
+        let mut row: Vec<Value> =
+            vec![what.into(), known(mean).into(), known(p95).into(), known(worst).into(), how.into()];
+        if has_levels {
+            row.insert(2, known(median).into());
+        }
+        table.row(row);
+    };
     for run in &document.runs {
         let of = if document.runs.len() > 1 { format!(", {}", run.run) } else { String::new() };
         if let Some(a) = &run.accuracy {
-            let stations = a.stations_mean.zip(a.stations_min).map(|(mean, least)| {
-                format!("; {} fixes from {mean:.1} stations on average, at least {least}", a.fixes)
-            });
-            let how = format!(
-                "covariance of every tick; limit {} cm, exceeded on {} % of the path{}",
-                number(100.0 * a.limit_m, 0),
-                per_cent(a.over_limit),
-                stations.unwrap_or_default()
-            );
-            table.row(vec![
-                format!("95 % error{of}").into(),
-                cm(a.mean_m).into(),
-                cm(a.p95_m).into(),
-                cm(a.max_m).into(),
-                how.into(),
-            ]);
+            let errors = [Some(a.mean_m), None, Some(a.p95_m), Some(a.max_m)];
+            add(format!("95 % error{of}"), errors, error_how(a));
             if let Some(p) = &a.protection {
-                let level = |level_m: Option<f64>| level_m.map_or_else(|| "\u{2013}".to_owned(), cm);
-                let how = format!(
-                    "median in the first column; covers one wrong station; not protected in {} % of the ticks",
-                    per_cent(p.unprotected)
-                );
-                table.row(vec![
-                    format!("Protection level{of}").into(),
-                    level(p.p50_m).into(),
-                    level(p.p95_m).into(),
-                    level(p.max_m).into(),
-                    how.into(),
-                ]);
+                add(format!("Protection level{of}"), [None, p.p50_m, p.p95_m, p.max_m], level_how(p));
             }
         }
         if let Some(p) = &run.positioning {
@@ -159,16 +149,34 @@ pub(in crate::document) fn accuracy_statement(document: &Document) -> Table {
                     p.position_lost_s
                 )
             };
-            table.row(vec![
-                format!("true error{of}").into(),
-                cm(p.mean_error_m).into(),
-                cm(p.p95_m).into(),
-                cm(p.max_m).into(),
-                how.into(),
-            ]);
+            let errors = [p.mean_error_m, p.p50_m, p.p95_m, p.max_m].map(Some);
+            add(format!("true error{of}"), errors, how);
         }
     }
     table
+}
+
+/// How the 95 % error was found.
+fn error_how(accuracy: &Accuracy) -> String {
+    let stations = accuracy.stations_mean.zip(accuracy.stations_min).map(|(mean, least)| {
+        format!("; {} fixes from {mean:.1} stations on average, at least {least}", accuracy.fixes)
+    });
+    format!(
+        "covariance of every tick; limit {} cm, exceeded on {} % of the path{}",
+        number(100.0 * accuracy.limit_m, 0),
+        per_cent(accuracy.over_limit),
+        stations.unwrap_or_default()
+    )
+}
+
+/// What a protection level covers, with which risk.
+fn level_how(protection: &Protection) -> String {
+    let risk = protection.risk.as_ref().map(|risk| format!("{}; ", risk_text(risk))).unwrap_or_default();
+    let levels = if protection.p50_m.is_none() { "the position was never protected; " } else { "" };
+    format!(
+        "covers one wrong station; {levels}{risk}not protected in {} % of the ticks",
+        per_cent(protection.unprotected)
+    )
 }
 
 const GUARANTEED_BY_ELLIPSE: &str = "A cell is guaranteed if a single pass would have scanned it even with a tool \
@@ -179,14 +187,6 @@ const GUARANTEED_BY_PROTECTION: &str = "A cell is guaranteed if a single pass wo
     robot within the level, which also covers one wrong station; where the position was not protected, nothing is \
     guaranteed.";
 
-/// Whether the protection level decides in all runs which floor is guaranteed.
-fn is_by_protection(document: &Document) -> bool {
-    document.runs.iter().all(|run| {
-        let protection = run.accuracy.as_ref().and_then(|accuracy| accuracy.protection);
-        protection.is_some_and(|protection| protection.guarantees)
-    })
-}
-
 /// Accuracy and guaranteed coverage.
 pub(super) fn accuracy(document: &Document) -> Vec<Block> {
     let pictures = &document.pictures;
@@ -196,15 +196,24 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
             "Of the floor reported as scanned, {} % was truly scanned; of the floor reported as guaranteed, \
              {} % was (simulation only).",
             per_cent(scanned),
-            per_cent(sure)
+            percent_text(sure, 2)
         ))
     });
     if !document.is_to_scan {
         let what = "The 95 % error is the longer semi-axis of the 95 % ellipse of the estimated position \
             (2.45 standard deviations).";
-        return vec![Block::Text(what.into()), Block::Table(accuracy_statement(document))];
+        let mut blocks = vec![Block::Text(what.into()), Block::Table(accuracy_statement(document))];
+        blocks.extend(survey_warnings(document).chain(calibrations(document)).map(Block::Text));
+        return blocks;
     }
-    let rule = if is_by_protection(document) { GUARANTEED_BY_PROTECTION } else { GUARANTEED_BY_ELLIPSE };
+    let rule = match rule(document) {
+        Rule::Ellipse => GUARANTEED_BY_ELLIPSE.to_owned(),
+        Rule::Protection => GUARANTEED_BY_PROTECTION.to_owned(),
+        Rule::Both => format!(
+            "The runs use two rules. By the 95 % ellipse: {GUARANTEED_BY_ELLIPSE} By the protection level: \
+             {GUARANTEED_BY_PROTECTION}"
+        ),
+    };
     let mut blocks = vec![
         Block::Text(format!(
             "The 95 % error is the longer semi-axis of the 95 % ellipse of the estimated position (2.45 \
@@ -213,6 +222,7 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
         Block::Pair(vec![picture(&pictures.accuracy), picture(&pictures.guaranteed)]),
         Block::Table(accuracy_statement(document)),
     ];
+    blocks.extend(survey_warnings(document).chain(calibrations(document)).map(Block::Text));
     let taken_back = document.runs.iter().flat_map(|run| &run.taken_back);
     blocks.extend(taken_back.map(|floor| Block::Text(format!("Guarantee taken back: {floor}."))));
     // The text above states the share of a single run.

@@ -6,7 +6,7 @@ use super::{
         decisions::{decisions, is_complete},
         model::Document,
         page::{Block, Field, Page, Section, Share, Table, Todo, Value, Verdict},
-        run_part::RunPart,
+        run_part::{RunPart, rule, survey_warnings},
         task::TaskPart,
         words::{number, number_of},
     },
@@ -143,15 +143,17 @@ fn verdict(document: &Document) -> Verdict {
     let of = if floor.requested.is_some() { "requested" } else { "reachable" };
     let zone = if floor.critical_zone.done { "complete" } else { "not complete" };
     let missed_m2 = due.missed * due.area_m2;
+    let cause = |cause: Option<String>| survey_warnings(document).chain(cause).collect::<Vec<_>>().join(" ");
     if is_complete(document) {
         let is_all = due.missed < 0.005 && floor.critical_zone.done;
         return Verdict {
             class: if is_all { "" } else { "part" },
             lead: format!(
                 "{scanned:.1} % of the {of} floor was scanned; {sure:.1} % is guaranteed, allowing for \
-                 the position error. The critical zone along the shell is {zone}."
+                 {}. The critical zone along the shell is {zone}.",
+                rule(document).allowance()
             ),
-            cause: String::new(),
+            cause: cause(None),
         };
     }
     let end = match last.and_then(|run| run.outcome) {
@@ -169,7 +171,7 @@ fn verdict(document: &Document) -> Verdict {
             "Not complete: {end}. {scanned:.1} % of the {of} floor was scanned; {missed_m2:.1} m² was \
              not."
         ),
-        cause: reason.map(|reason| format!("Cause: {reason}.")).unwrap_or_default(),
+        cause: cause(reason.map(|reason| format!("Cause: {reason}."))),
     }
 }
 
@@ -217,9 +219,9 @@ fn shares(document: &Document) -> Vec<Share> {
             unit: "%",
             of: "of the reachable floor, guaranteed",
             about: format!(
-                "{} m² scanned for every position of the robot within its 95 % error; {:.1} % of the whole \
-                 floor",
+                "{} m² {}; {:.1} % of the whole floor",
                 m2(sure, reachable),
+                rule(document).definition(),
                 whole.percent.guaranteed.unwrap_or(0.0)
             ),
         },
@@ -315,7 +317,7 @@ pub(super) fn scope(document: &Document) -> Vec<Block> {
                 within the limit"
                     .into(),
             ),
-            ("Guaranteed", "scanned for every position of the robot within its 95 % position error".into()),
+            ("Guaranteed", rule(document).definition().into()),
             ("Missed", "reachable, but not scanned; each area has a number, a position and a reason".into()),
             ("Unreachable", "beside obstacles, in no-go zones, or closed off".into()),
             ("Shell margin", "unreachable because the robot keeps its distance from the shell".into()),

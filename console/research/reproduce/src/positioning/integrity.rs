@@ -51,6 +51,13 @@ const DETECTABLE: f64 = 4.13;
 /// The share of a range's variance that must remain in its residual for the other ranges to check it.
 const LEAST_SPARED: f64 = 1e-6;
 
+/// The id of the totals over all geometries.
+const ALL: &str = "all";
+/// The largest share of fixes without a fault that may be beyond their level.
+const MOST_BEYOND: f64 = 1e-5;
+/// The largest level of the median geometry without a fault, relative to the error that one fix in 1000 exceeds.
+const MOST_LEVEL_TO_ERROR: f64 = 2.5;
+
 /// The error of a station.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Fault {
@@ -200,28 +207,59 @@ impl Tally {
 }
 
 fn run(job: &Job<'_>) -> Result<Vec<Row>> {
-    let cases = job.cases(geometries(), |geometry| geometry.id.clone())?;
+    let chosen = job.cases(geometries().into_iter().map(Some).chain([None]), |one| id_of(one.as_ref()))?;
+    // Alone, the totals are those of all geometries.
+    let are_listed = chosen.iter().any(Option::is_some);
+    let cases: Vec<Geometry> = if are_listed { chosen.into_iter().flatten().collect() } else { geometries() };
     let methods = job.methods(METHODS, |(id, ..)| (*id).into())?;
     let done = job.runner.grid(&cases, &job.seeds(), |_, geometry, seed| {
         Ok(methods.iter().map(|method| draw(geometry, method, *seed)).collect::<Vec<Tally>>())
     })?;
-    let mut rows = Vec::new();
+    let (mut totals, mut rows) = (Vec::new(), Vec::new());
     for (m, (method, _, fault)) in methods.iter().enumerate() {
         let of_case: Vec<Tally> =
             done.iter().map(|draws| Tally::join(draws.iter().map(|draw| &draw[m]))).collect();
-        for (geometry, tally) in cases.iter().zip(&of_case).filter(|(_, tally)| tally.cycles > 0) {
+        let listed = cases.iter().zip(&of_case).filter(|(_, tally)| are_listed && tally.cycles > 0);
+        for (geometry, tally) in listed {
             rows.extend(tally.rows(&job.block(&geometry.id, method, ""), *fault));
         }
-        let block =
-            job.block("all", method, "with a fault: 1e-5 over the probability that this station is wrong");
-        let allowed = if *fault == Fault::None { 1e-5 } else { 1e-5 / Risk::default().prior() };
-        let ratios: Sample = of_case.iter().filter_map(Tally::level_to_error).collect();
-        rows.extend(Tally::join(of_case.iter()).rates(&block, *fault));
-        rows.push(block.row("beyond_allowed", allowed, "", 1));
-        rows.push(block.row("level_to_error_median", ratios.median(), "", ratios.len()));
-        rows.push(block.row("level_to_error_max", ratios.max(), "", ratios.len()));
+        totals.extend(total_rows(&job.block(ALL, method, ""), &of_case, *fault));
     }
-    Ok(rows)
+    // The totals come first: they are the result.
+    totals.extend(rows);
+    Ok(totals)
+}
+
+/// The id of a geometry; that of the totals without one.
+fn id_of(geometry: Option<&Geometry>) -> String {
+    geometry.map_or_else(|| ALL.to_owned(), |geometry| geometry.id.clone())
+}
+
+/// The rows of a method over all geometries. The criteria are those of the design of the protection levels; the note of
+/// a row with a criterion states whether it is met.
+fn total_rows(block: &Block<'_>, of_case: &[Tally], fault: Fault) -> Vec<Row> {
+    let (allowed, why) = match fault {
+        Fault::None => (MOST_BEYOND, "the accepted risk"),
+        _ => (MOST_BEYOND / Risk::default().prior(), "the accepted risk over the probability of a fault"),
+    };
+    let met = |is_met: bool| if is_met { "met" } else { "NOT MET" };
+    let ratios: Sample = of_case.iter().filter_map(Tally::level_to_error).collect();
+    let mut rows = Tally::join(of_case.iter()).rates(block, fault);
+    if let Some(beyond) = rows.iter_mut().find(|row| row.metric == "beyond_rate") {
+        let is_met = beyond.ours.is_some_and(|rate| rate <= allowed);
+        beyond.note = format!("at most {allowed:e} allowed, {why}: {}", met(is_met));
+    }
+    let mut median = block.row("level_to_error_median", ratios.median(), "", ratios.len());
+    if fault == Fault::None {
+        let is_met = median.ours.is_some_and(|ratio| ratio <= MOST_LEVEL_TO_ERROR);
+        median.note = format!("at most {MOST_LEVEL_TO_ERROR} allowed: {}", met(is_met));
+    }
+    rows.extend([
+        block.row("beyond_allowed", allowed, "", 1),
+        median,
+        block.row("level_to_error_max", ratios.max(), "", ratios.len()),
+    ]);
+    rows
 }
 
 /// One draw; without cycles in a geometry that does not suit the method.
@@ -348,6 +386,7 @@ fn heard(geometry: &Geometry, at: Point, rng: &mut Pcg64) -> Vec<Ranging> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::*;
 
@@ -361,6 +400,26 @@ mod tests {
         let [first, again] = [0, 0].map(|_| draw(&all[2], &METHODS[1], 7));
         assert_eq!((first.errors_m, first.levels_m), (again.errors_m, again.levels_m));
         assert!(draw(&all[0], &METHODS[3], 7).cycles == 0, "differences need five stations");
+    }
+
+    #[test]
+    fn the_totals_say_whether_their_criteria_are_met() {
+        let block = Block { table: "integrity", case: ALL, method: "ranges", note: "" };
+        let tally = |beyond| Tally {
+            cycles: 1000,
+            beyond,
+            errors_m: vec![0.1; 1000],
+            levels_m: vec![0.2; 1000],
+            ..Tally::default()
+        };
+        let note = |beyond, fault, metric: &str| {
+            let rows = total_rows(&block, &[tally(beyond)], fault);
+            rows.iter().find(|row| row.metric == metric).unwrap().note.clone()
+        };
+        assert_eq!(note(0, Fault::None, "beyond_rate"), "at most 1e-5 allowed, the accepted risk: met");
+        assert!(note(1, Fault::None, "beyond_rate").ends_with(": NOT MET"));
+        assert!(note(1, Fault::Any, "beyond_rate").ends_with(": met"), "one in ten is allowed");
+        assert_eq!(note(0, Fault::None, "level_to_error_median"), "at most 2.5 allowed: met");
     }
 
     #[test]

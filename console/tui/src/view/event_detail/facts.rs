@@ -164,7 +164,7 @@ fn of_event(run: &Run, event: &Occurrence) -> Vec<Field> {
         }
         EventKind::PositionAwaited { limit_m, ends_t_s } => vec![
             ("limit", metres(*limit_m) + " (95 %)"),
-            ("ends at", format!("T+{} s", text::number(*ends_t_s, 0))),
+            ("ends at", format!("T+{}", text::clock(*ends_t_s))),
         ],
         EventKind::Link(link) => linked(link),
         EventKind::Stood { after_s, .. } => vec![("after", format!("{} s", text::number(*after_s, 2)))],

@@ -18,7 +18,10 @@ pub(super) fn clauses(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String>
             let mut clauses = held_for_now(head, by, *resumes);
             let ends_t_s = run.vehicle.as_ref().and_then(|vehicle| vehicle.waits_until_s);
             // The key for HOLD is among the keys, too.
-            clauses.splice(2..2, ends_t_s.map(|t_s| format!("Otherwise, it ends at T+{t_s:.0} s.")));
+            clauses.splice(
+                2..2,
+                ends_t_s.map(|t_s| format!("Otherwise, it ends at T+{}.", mission::clock(t_s))),
+            );
             clauses
         }
         (Some(trouble), _) => held_without_position(head, by, trouble),

@@ -304,7 +304,7 @@ const fn figure(label: &'static str, letter: &'static str, unit: &'static str, d
 }
 
 /// The figures in table order.
-const FIGURES: [Figure; 10] = [
+const FIGURES: [Figure; 11] = [
     Figure {
         promised: |e, _| Some(Found::of(e.time_s)),
         limit: |m| Some(m.time_limit_s),
@@ -368,6 +368,10 @@ const FIGURES: [Figure; 10] = [
         limit: |m| Some(m.position_limit_m),
         now: |run| Some(alike(format!("±{} m", text::number(run.position.error_m()?, 2)))),
         ..figure("AE error", "e", " m", 2)
+    },
+    Figure {
+        promised: |_, run| Some(Found { note: " median".into(), ..Found::of(run.level?.median_m?) }),
+        ..figure("fix level", "", " m", 2)
     },
     Figure {
         promised: |e, _| Some(Found { note: " of path".into(), ..Found::of(e.without_fix_m) }),

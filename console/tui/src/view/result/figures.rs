@@ -55,10 +55,12 @@ fn lines(model: &Model, result: &RunResult, columns: usize) -> Vec<Parts> {
     let reason = result.summary.reason.as_deref().unwrap_or("cut off");
     let mut lines = wrapped(role(result), reason);
     lines.extend(requested(model).iter().flat_map(|words| wrapped(Role::Text, words)));
+    lines.extend(guaranteed(model, result).iter().flat_map(|words| wrapped(Role::Text, words)));
     for violation in result.summary.violations.iter().flatten() {
         lines.extend(wrapped(Role::Warn, &format!("! {violation}")));
     }
     lines.extend(table(model, result, columns));
+    lines.extend(level(result).iter().flat_map(|words| wrapped(Role::Text, words)));
     lines.extend(trouble(model, result, columns));
     let notes = true_error(model, result).into_iter().chain(scan_limit(model, result));
     lines.extend(notes.flat_map(|words| wrapped(Role::Text, &words)));
@@ -229,6 +231,37 @@ fn requested(model: &Model) -> Vec<String> {
         )
     });
     own.into_iter().chain(all).collect()
+}
+
+/// The guaranteed share of the reachable floor with the rule by which it counts; for a re-scan, also the share over all runs,
+/// and what became of the floor that lost its guarantee.
+fn guaranteed(model: &Model, result: &RunResult) -> Vec<String> {
+    let level = result.summary.accuracy.and_then(|accuracy| accuracy.protection);
+    let rule = if level.is_some_and(|level| level.guarantees) { "protection level" } else { "95 % ellipse" };
+    let share = |shares: &Shares| Some(text::number(shares.percent.guaranteed?, 1));
+    let own = result.summary.floor.as_ref().and_then(|floor| share(&floor.reachable));
+    let own = own.map(|own| format!("Guaranteed by the {rule}: {own} % of reachable floor."));
+    let all = model.live.together().and_then(|all| {
+        let shared = share(&all.floor.reachable).map(|share| format!("{share} % guaranteed"));
+        let regained = all.taken_back.map(|floor| floor.to_string());
+        let parts: Vec<String> = shared.into_iter().chain(regained).collect();
+        (!parts.is_empty()).then(|| format!("All runs: {}.", parts.join("; ")))
+    });
+    own.into_iter().chain(all).collect()
+}
+
+/// The protection level of the run; `None` if its scenario states no risk.
+fn level(result: &RunResult) -> Option<String> {
+    let level = result.summary.accuracy?.protection?;
+    let Some((median_m, max_m)) = level.p50_m.zip(level.max_m) else {
+        return Some("Protection level: none; the position was never protected.".to_owned());
+    };
+    Some(format!(
+        "Protection level: median {}, largest {} m; not protected in {} % of the time.",
+        text::number(median_m, 2),
+        text::number(max_m, 2),
+        text::percent(level.unprotected)
+    ))
 }
 
 /// The error against the true position.

@@ -3,7 +3,7 @@
 /// Formats a time span as hours, minutes and whole seconds; fractions of a second are cut off.
 ///
 /// ```
-/// assert_eq!(account::clock(2480.9), "00:41:20");
+/// assert_eq!(mission::clock(2480.9), "00:41:20");
 /// ```
 pub fn clock(seconds: f64) -> String {
     let whole = if seconds.is_finite() { seconds.max(0.0) as u64 } else { 0 };
