@@ -50,6 +50,8 @@ mod looking_on;
 mod mapped;
 #[path = "acceptance/packed.rs"]
 mod packed;
+#[path = "acceptance/physical.rs"]
+mod physical;
 #[cfg(target_os = "linux")]
 #[path = "acceptance/planning.rs"]
 mod planning;
