@@ -41,7 +41,7 @@ const MOST_PLANNERS: usize = 1000;
 /// The state of a run, from its events so far.
 #[derive(Debug, Default)]
 pub struct Fold {
-    known: Summary,
+    known: Box<Summary>,
     truth: Option<Pose>,
     scanned: Option<Scanned>,
     tracker: Option<Tracker>,
@@ -332,7 +332,7 @@ impl Fold {
             calibration: self.ranging.calibration(),
             clocks: self.ranging.clocks(),
             pulse_tests: self.ranging.pulse_tests().to_vec(),
-            ..self.known.clone()
+            ..(*self.known).clone()
         }
     }
 

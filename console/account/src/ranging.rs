@@ -318,7 +318,9 @@ mod tests {
     fn stations_are_not_as_surveyed_from_a_contradiction_until_a_test_agrees() {
         let said = |tests: &[(f64, EventKind)]| {
             let mut ranging = ranging();
-            tests.iter().for_each(|(t_s, kind)| ranging.apply(*t_s, kind));
+            for (t_s, kind) in tests {
+                ranging.apply(*t_s, kind);
+            }
             not_as_surveyed(ranging.pulse_tests())
         };
         let before = |integrity| (0.0, tested(PulsePhase::Before, 0.02, integrity));

@@ -51,7 +51,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     // one.
     let has =
         |figure: &Figure| estimate.is_none_or(|estimate| (figure.promised)(estimate, look.run).is_some());
-    for figure in FIGURES.into_iter().filter(has) {
+    let computes = |figure: &Figure| figure.label != FIX_LEVEL || look.run.level.is_some();
+    for figure in FIGURES.into_iter().filter(has).filter(computes) {
         let mut mine = cell(figure, estimate, (Role::Text, widths.first));
         let lanes = look.model.live.plans.lanes;
         // While a plan is being made, the lanes are those of the plan before.
@@ -303,6 +304,9 @@ const fn figure(label: &'static str, letter: &'static str, unit: &'static str, d
     }
 }
 
+/// The label of the forecast protection level, which only a mission with a stated risk has.
+const FIX_LEVEL: &str = "fix level";
+
 /// The figures in table order.
 const FIGURES: [Figure; 11] = [
     Figure {
@@ -371,7 +375,7 @@ const FIGURES: [Figure; 11] = [
     },
     Figure {
         promised: |_, run| Some(Found { note: " median".into(), ..Found::of(run.level?.median_m?) }),
-        ..figure("fix level", "", " m", 2)
+        ..figure(FIX_LEVEL, "", " m", 2)
     },
     Figure {
         promised: |e, _| Some(Found { note: " of path".into(), ..Found::of(e.without_fix_m) }),
