@@ -222,9 +222,13 @@ mod tests {
     #[test]
     fn copies_of_a_pulse_count_as_one() {
         let mut once = exchange([0.0; 4]);
-        once.iter_mut().for_each(|set| set.lengths_m.truncate(1));
+        for set in &mut once {
+            set.lengths_m.truncate(1);
+        }
         let mut copied = once.clone();
-        copied.iter_mut().for_each(|set| set.lengths_m = vec![set.lengths_m[0]; 30]);
+        for set in &mut copied {
+            set.lengths_m = vec![set.lengths_m[0]; 30];
+        }
         assert!((sigma_of(&copied) / sigma_of(&once) - 1.0).abs() < 1e-9);
     }
 
