@@ -30,6 +30,11 @@ pub const FAULT_LASTS_H: f64 = 1.0;
 pub const MOST_WHILE_WRONG: f64 = 1e-3;
 /// The solver either keeps all stations or leaves one out; each of these two cases has half of the risk.
 const SELECTIONS: f64 = 2.0;
+/// The share of a step that the curvature of the range circles may change: beyond it, two steps do not find the position
+/// without a station.
+const MOST_CURVED: f64 = 0.25;
+/// The length of a step, metres, below which its curvature does no harm.
+const NEAR_M: f64 = 0.05;
 /// The number of stations above the number of unknowns that a level needs: one for the fault, and one to exclude the
 /// mirror image of the remaining stations.
 const SPARE: usize = 2;
@@ -257,7 +262,11 @@ impl Seen {
         }
         let covariance = self.covariance + pull * pull.transpose() / spared;
         let first = -pull * (row.residual_m / spared);
-        let step = first + covariance * self.gradient_without(index, &first);
+        let second = covariance * self.gradient_without(index, &first);
+        if second.xy().norm() > MOST_CURVED * first.xy().norm() && first.xy().norm() > NEAR_M {
+            return None;
+        }
+        let step = first + second;
         Some(Without {
             shift_m: step.xy().norm().max(first.xy().norm()),
             position: self.position + step.xy(),
