@@ -101,13 +101,31 @@ fn squared(anchors: &[Anchor]) -> Option<Point> {
     Some(Point::new(solved.x, solved.y)).filter(|at| at.iter().all(|c| c.is_finite()))
 }
 
-/// Returns the minimum below `start`, with its sum of squared residuals in units of their variances.
-pub(crate) fn minimum(anchors: &[Anchor], start: Point) -> Option<(Point, f64)> {
-    descend(anchors, start).map(|found| (found.position, found.cost))
+/// Returns the end of a descent from `start`, with its sum of squared residuals in units of their variances. A place without
+/// a minimum below it ends where the search gives up. `None` if the numbers have overflowed.
+pub(crate) fn lowest(anchors: &[Anchor], start: Point) -> Option<(Point, f64)> {
+    let end = walk(anchors, start)?;
+    end.slope.cost.is_finite().then(|| (Point::new(end.state.x, end.state.y), end.slope.cost))
 }
 
-/// Descends from a place in Gauss-Newton steps with Levenberg-Marquardt damping.
+/// Descends from a place to a minimum.
 fn descend(anchors: &[Anchor], start: Point) -> Option<Minimum> {
+    let End { state, slope, is_settled } = walk(anchors, start)?;
+    let covariance = slope.curvature.try_inverse().filter(|_| is_settled)?;
+    Some(Minimum { position: Point::new(state.x, state.y), excess_m: state.z, cost: slope.cost, covariance })
+}
+
+/// The end of a walk downhill.
+struct End {
+    /// Position and common excess of the ranges, metres.
+    state: Vector3<f64>,
+    slope: Slope,
+    /// Whether the last step was negligible.
+    is_settled: bool,
+}
+
+/// Walks downhill from a place in Gauss-Newton steps with Levenberg-Marquardt damping. `None` if a step cannot be computed.
+fn walk(anchors: &[Anchor], start: Point) -> Option<End> {
     let mut state = Vector3::new(start.x, start.y, 0.0);
     state.z = best_excess_m(anchors, start);
     let (mut damping, mut here) = (1e-9, slope(anchors, &state));
@@ -122,16 +140,10 @@ fn descend(anchors: &[Anchor], start: Point) -> Option<Minimum> {
             damping = (damping * 10.0).max(1e-4);
         }
         if step.norm() < SETTLED_M {
-            let covariance = here.curvature.try_inverse()?;
-            return Some(Minimum {
-                position: Point::new(state.x, state.y),
-                excess_m: state.z,
-                cost: here.cost,
-                covariance,
-            });
+            return Some(End { state, slope: here, is_settled: true });
         }
     }
-    None
+    Some(End { state, slope: here, is_settled: false })
 }
 
 /// Returns the excess that fits a place best.

@@ -155,13 +155,29 @@ fn beside_the_line(anchors: &[Anchor], near: Point) -> Point {
     middle + along * x + across * y.copysign(across.dot(&(near - middle)))
 }
 
-/// Returns the minimum below `start`, with its sum of squared residuals in units of their variances.
-pub(crate) fn minimum(anchors: &[Anchor], start: Point) -> Option<(Point, f64)> {
-    descend(anchors, start).ok().map(|found| (found.position, found.cost))
+/// Returns the end of a descent from `start`, with its sum of squared residuals in units of their variances. A place without
+/// a minimum below it ends where the search gives up. `None` if the numbers have overflowed.
+pub(crate) fn lowest(anchors: &[Anchor], start: Point) -> Option<(Point, f64)> {
+    let end = walk(anchors, start);
+    end.cost.is_finite().then_some((end.position, end.cost))
 }
 
 /// Descends from `start` until the steps are negligible.
 fn descend(anchors: &[Anchor], start: Point) -> Result<Minimum, FixError> {
+    let End { position, cost, settled_after } = walk(anchors, start);
+    let iterations = settled_after.ok_or(FixError::NotConverged { iterations: MAX_ITERATIONS })?;
+    Ok(Minimum { position, cost, information: information_at(anchors, position), iterations })
+}
+
+/// The end of a walk downhill.
+struct End {
+    position: Point,
+    cost: f64,
+    /// The number of steps after which the steps were negligible.
+    settled_after: Option<usize>,
+}
+
+fn walk(anchors: &[Anchor], start: Point) -> End {
     let scale = anchors.iter().map(|a| a.range_m).fold(0.0, f64::max);
     let (mut position, mut damping) = (start, 1e-9);
     let mut here = Slope::at(anchors, position);
@@ -174,12 +190,11 @@ fn descend(anchors: &[Anchor], start: Point) -> Result<Minimum, FixError> {
             here = there;
         }
         if step.norm() <= STEP_TOLERANCE * scale {
-            let information = information_at(anchors, position);
-            return Ok(Minimum { position, cost: here.cost, information, iterations });
+            return End { position, cost: here.cost, settled_after: Some(iterations) };
         }
         damping = if is_better { (damping * 0.1).max(1e-9) } else { (damping * 10.0).max(1e-4) };
     }
-    Err(FixError::NotConverged { iterations: MAX_ITERATIONS })
+    End { position, cost: here.cost, settled_after: None }
 }
 
 /// The cost at a position with its derivatives.

@@ -44,7 +44,7 @@ impl Layout {
 }
 
 /// Returns the distance from a place, which fits the ranges best, to the place on the other side of the stations,
-/// metres; 0 if the ranges exclude it. `None` if the search fails.
+/// metres; 0 if the ranges exclude it. `None` if the numbers overflow.
 ///
 /// The ranges exclude a place if the sum of their squared residuals there, in units of the variances, exceeds the least
 /// sum by `limit`: so much more at the true position has a probability of at most exp(-limit / 2).
@@ -54,10 +54,10 @@ pub(crate) fn other_side_m(anchors: &[Anchor], at: Point, is_emission_free: bool
     }
     let there = reflected(anchors, at);
     let (here, there) = if is_emission_free {
-        let [here, there] = [at, there].map(|start| differences::minimum(anchors, start));
+        let [here, there] = [at, there].map(|start| differences::lowest(anchors, start));
         (here?, there?)
     } else {
-        let there = nonlinear::minimum(anchors, there)?;
+        let there = nonlinear::lowest(anchors, there)?;
         ((at, Slope::at(anchors, at).cost), there)
     };
     Some(if there.1 <= here.1 + limit { (there.0 - at).norm() } else { 0.0 })
