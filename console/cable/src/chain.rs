@@ -128,11 +128,6 @@ impl Chain {
         self.links.rest_m[self.links.torn.map_or(0, |torn| torn + 1)..].iter().sum()
     }
 
-    /// The largest pull in the cable, newtons.
-    pub fn pull_max_n(&self) -> f64 {
-        self.found.pull_n.iter().copied().fold(0.0, f64::max)
-    }
-
     /// Pull of the cable at the robot, newtons: next to nothing if the cable is slack there.
     pub fn pull_at_robot_n(&self) -> f64 {
         self.found.pull_n.first().copied().unwrap_or_default()

@@ -41,8 +41,11 @@ impl Disk {
 
     /// Lists a scenario file from now on, even if it is in none of the folders.
     pub(super) fn list(&self, source: &Source) {
-        if let Source::File(path) = source {
-            self.opened.lock().unwrap_or_else(PoisonError::into_inner).insert(path.into());
+        // A scenario may also be opened by its name, which is not a path.
+        if let Source::File(path) = source
+            && let Ok(whole) = std::fs::canonicalize(path)
+        {
+            self.opened.lock().unwrap_or_else(PoisonError::into_inner).insert(whole);
         }
     }
 
@@ -80,7 +83,8 @@ impl Disk {
         }
     }
 
-    /// The scenarios in the folders and those that were opened by their paths, by name; the demo is always included, wherever the console was started.
+    /// The scenarios in the folders and those that were opened by their paths, by name; the demo is always included, wherever
+    /// the console was started.
     fn scenarios(&self) -> Vec<ScenarioEntry> {
         let folders = &self.tools.config.scenarios;
         let mut files: Vec<PathBuf> = folders
@@ -90,9 +94,11 @@ impl Disk {
             .filter_map(|entry| Some(entry.ok()?.path()))
             .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
             .collect();
-        files.extend(self.opened.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned());
+        let listed: BTreeSet<PathBuf> =
+            files.iter().filter_map(|file| std::fs::canonicalize(file).ok()).collect();
+        let opened = self.opened.lock().unwrap_or_else(PoisonError::into_inner);
+        files.extend(opened.difference(&listed).cloned());
         files.sort();
-        files.dedup();
         let mut entries: Vec<ScenarioEntry> = files.iter().map(|file| self.entry(file)).collect();
         if !entries.iter().any(|entry| entry.name == "demo") {
             entries.push(entry_of(

@@ -786,6 +786,7 @@ fn a_physical_cable_needs_a_reel_and_only_it_can_have_a_reel_that_fails() {
         (with("model = \"physical\"\nbreaks_at_n = 0.0"), "tether.breaks_at_n", "at least 0.1 N"),
         (with("model = \"physical\"\nbreaks_at_n = inf"), "tether.breaks_at_n", "finite"),
         (with("model = \"elastic\""), "tether.model", "physical"),
+        (with("model = \"physical\"").replace("= 30.0", "= 301.0"), "tether.reel_length_m", "at most 300 m"),
     ] {
         let text = errors(&text).render();
         assert!(text.contains(key) && text.contains(why), "{text}");

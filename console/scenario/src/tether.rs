@@ -48,6 +48,10 @@ const REEL: [&str; 7] = [
     "pull_ratio_max",
 ];
 
+/// The longest simulated cable, metres: with up to 0.3 m, its links follow columns as the taut line does; with 0.4 m, they
+/// do not.
+const LONGEST_SIMULATED_M: f64 = 300.0;
+
 /// The keys of the faults of a physical cable and its reel.
 const FAULTS: [&str; 3] = ["reel_fails_at_s", "breaks_at_s", "breaks_at_n"];
 
@@ -86,6 +90,13 @@ pub(crate) fn physical(
             "at most {MOST_SIMULATED_FRICTION} with model = \"physical\": the simulated cable is not exact above that"
         );
         section.complain("friction", Complaint::OutOfRange(must_be));
+    }
+    if tether.limits.reel_length_m > LONGEST_SIMULATED_M {
+        let must_be = format!(
+            "at most {LONGEST_SIMULATED_M} m with model = \"physical\": the links of a longer cable are too long for columns; \
+             give the length that the plan needs"
+        );
+        section.complain("reel_length_m", Complaint::OutOfRange(must_be));
     }
     let reel = tether.reel?;
     let speed_m_per_s = section.number("reel_speed_m_per_s").unwrap_or(2.0 * v_max_m_per_s);

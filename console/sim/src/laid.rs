@@ -40,7 +40,9 @@ impl Laid {
         if is_past(fails_at_s) {
             moved.chain.stop_reel();
         }
-        if is_past(breaks_at_s) || breaks_at_n.is_some_and(|most_n| self.chain.pull_max_n() > most_n) {
+        // The pull of a cable that slides is largest at one of its ends.
+        let most_n = self.robot_pull_n().max(self.reel_pull_n());
+        if is_past(breaks_at_s) || breaks_at_n.is_some_and(|breaks_at_n| most_n > breaks_at_n) {
             moved.chain.tear();
         }
         moved.chain.step(robot, &self.surfaces, self.tick_s);

@@ -41,8 +41,8 @@ impl Known {
     }
 
     /// The way on which the tether is only reeled in; if it is caught, it is freed first, and if it is slack, it is made taut
-    /// first. No-go zones are avoided without
-    /// changing the side on which any obstacle is passed.
+    /// first. No-go zones are avoided without changing the side on which any obstacle is passed; a zone in which the robot is
+    /// may be left along the tether.
     fn way_along(&self, tether: &Tether) -> Result<Vec<Point>, String> {
         let fenced = fenced(self.chart.world());
         let along = |room_m: f64| {
@@ -60,9 +60,23 @@ impl Known {
             }?;
             Some(self.led_from_here(home))
         };
+        // No way from the nearest place outside a zone may lead round the zone, while the tether leads straight out of it.
+        let out_of_zone = |room_m: f64| {
+            let home = self.led_from_here(tether.way_home(&self.around(), room_m)?);
+            Some(home).filter(|home| self.is_free_from_here(home))
+        };
         self.widest(along)
+            .or_else(|| self.widest(out_of_zone))
             .or_else(|| self.retraced(tether))
             .ok_or_else(|| "the hull does not fit through the return path along the tether".into())
+    }
+
+    /// The tank with its no-go zones as obstacles, without the zones in which the hull is.
+    fn around(&self) -> World {
+        let mut world = self.chart.world().clone();
+        let (here, hull_m) = (self.position(), self.config.limits.radius_m);
+        world.zones.retain(|zone| zone.shape.distance_m(here) > hull_m);
+        fenced(&world)
     }
 
     /// The path driven, backwards; `None` if the hull does not fit everywhere along it.

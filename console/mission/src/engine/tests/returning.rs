@@ -168,6 +168,26 @@ fn a_hull_in_a_zone_is_held_once_and_drives_out_of_it() {
     }
 }
 
+/// The nearest place outside the zone is beyond it, and the zone reaches from wall to wall.
+#[test]
+fn a_hull_in_a_zone_that_closes_the_way_round_leaves_it_along_the_tether() {
+    let mut flight = Flight::new(tethered(20.0));
+    flight.tick(&[Order::Start]);
+    flight.fly(80);
+    let here = flight.pose.position;
+    let vertices = world::shape::rectangle(Point::new(here.x - 0.9, -20.0), Point::new(here.x + 0.4, 20.0));
+    let shape = Shape::Polygon { vertices };
+    flight.mission.known.chart.draw(Zone { name: "wet".into(), kind: ZoneKind::NoGo, shape });
+    flight.tick(&[]);
+    assert_eq!(flight.held_by(), Some(&HoldReason::ZoneBreached { zone: "wet".into() }));
+    let way = flight.mission.way_back().unwrap();
+    let straight_m = (flight.pose.position - Point::new(-3.0, 0.0)).norm();
+    assert!((way.length_m - straight_m).abs() < 0.1, "{way:?}");
+    assert_eq!(refusal(&flight.tick(&[Order::DriveBack])), None);
+    flight.fly(300);
+    assert_eq!(flight.ended(), Some(Outcome::Aborted), "{:?}", flight.mission.phase());
+}
+
 #[test]
 fn an_obstacle_found_on_the_way_back_is_gone_round() {
     let mut flight = held(config(), 100);
