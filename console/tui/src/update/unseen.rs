@@ -48,6 +48,6 @@ pub(super) fn is_too_early(model: &mut Model, press: KeyPress) -> bool {
     if was_shown && model.console.now.mono_s - appeared.at_mono_s >= READ_S {
         return false;
     }
-    model.hint(format!("the question has just appeared; press {} again to answer", press.key));
+    model.hint(format!("the question has just appeared; press {} again", press.key));
     true
 }

@@ -109,7 +109,9 @@ fn list(survey: &Survey, rows: usize, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = all.take(rows).map(|(index, column)| row(index, column, width)).collect();
     let left_out = survey.columns.len() - lines.len();
     if left_out > 0 && lines.pop().is_some() {
-        lines.push(format!(" and {} more, on the map", left_out + 1));
+        let more = if lines.is_empty() { "" } else { "and " };
+        let more_of = if lines.is_empty() { "columns" } else { "more" };
+        lines.push(format!(" {more}{} {more_of}, on the map", left_out + 1));
     }
     lines
 }

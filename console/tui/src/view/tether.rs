@@ -46,6 +46,12 @@ fn wide_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> 
     };
     let (out, left) = (metres(tether.length_m), metres(tether.free_m));
     let reel = reel(look);
+    if tether.is_broken {
+        return vec![
+            row(0, "torn", (Role::Crit, format!("{out} m off the reel"))),
+            row(1, "return path", home(tether)),
+        ];
+    }
     let out = [format!("{out} of {reel}, {left} m left"), format!("{out} of {reel} m")];
     let out = metered(out_share(look, tether), out, room);
     let still_out = format!("{} m still out", metres(tether.length_m));
@@ -100,6 +106,9 @@ fn narrow_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)
     };
     let room = columns.saturating_sub(2);
     let (out, reel) = (metres(tether.length_m), reel(look));
+    if tether.is_broken {
+        return vec![row(0, "", (Role::Crit, format!("torn, {out} m off the reel")))];
+    }
     let out = [format!("{out} of {reel} m out"), format!("{out} of {reel} m")];
     let pull = pull(look, tether, ("reel needs ", room)).map(|pull| row(4, "", pull));
     let felt = tether.measured.into_iter().flat_map(|measured| {

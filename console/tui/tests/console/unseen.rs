@@ -41,7 +41,7 @@ fn keys_that_were_typed_ahead_answer_no_question() {
         let effects = [press(&mut screen, key, 7), press(&mut screen, Key::Enter, 7)].concat();
         assert!(!moves(&effects), "{key}: {effects:?}");
         assert_ne!(screen.model.ui.overlay, Overlay::None, "{key}: the question stays open");
-        assert_eq!(notice(&screen), "the question has just appeared; press Enter again to answer", "{key}");
+        assert_eq!(notice(&screen), "the question has just appeared; press Enter again", "{key}");
     }
 }
 
