@@ -202,6 +202,13 @@ impl Live {
         (is_current || *self.run.phase() != Phase::Waiting).then_some(left_out)
     }
 
+    /// Whether the plan was made on the way, so that the promised figures are those of an earlier one.
+    pub fn is_plan_of_the_way(&self) -> bool {
+        let first = self.plans.left_out.as_ref().map(|(ask, _)| *ask);
+        let now = self.run.planning.plan.as_ref().map(|plan| plan.ask);
+        first.zip(now).is_some_and(|(first, now)| first != now)
+    }
+
     /// Requested floor that was not scanned, in the order in which it is numbered.
     pub fn missed(&self) -> Vec<&Area<MissReason>> {
         self.floor().map(Account::listed).unwrap_or_default()

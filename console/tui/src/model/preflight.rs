@@ -142,6 +142,11 @@ impl Model {
             (_, None) if standing.readiness == Readiness::Preparing => {
                 check("plan", CheckOutcome::Failed, "being made; start again when it is ready".into())
             }
+            (Some(plan), None) if self.live.is_plan_of_the_way() => {
+                let outcome = if plan.complete { CheckOutcome::Passed } else { CheckOutcome::Warning };
+                let what = if plan.complete { "the whole task" } else { "only part of the task" };
+                check("plan", outcome, format!("{:.1} m, {what}; made on the way", plan.length_m))
+            }
             (Some(plan), None) if plan.complete => {
                 let left_out = self.live.left_out().filter(|left_out| !left_out.areas.is_empty());
                 let what = left_out.map_or_else(|| "the whole task".to_owned(), all_but);

@@ -128,7 +128,8 @@ fn in_short(look: &Look) -> Option<String> {
         n => format!(", {} left out", text::counted(n, "area")),
     };
     let scanned = text::percent(left_out.scanned());
-    Some(format!("{}{certified}: {scanned} % of requested{areas}.", readiness(look)))
+    let of = if look.model.live.is_plan_of_the_way() { "at the start " } else { "" };
+    Some(format!("{}{certified}: {of}{scanned} % of requested{areas}.", readiness(look)))
 }
 
 /// How much of the task the plan achieves. The base is the floor that was requested.
@@ -146,7 +147,11 @@ fn ready(look: &Look, is_complete: bool) -> (Role, String) {
                 0 => String::new(),
                 n => format!("; {} left out{smaller}", text::counted(n, "area")),
             };
-            format!("{state} Scans {scanned} % of the requested floor{areas}.")
+            if look.model.live.is_plan_of_the_way() {
+                format!("{state} The plan at the start scans {scanned} % of the requested floor{areas}.")
+            } else {
+                format!("{state} Scans {scanned} % of the requested floor{areas}.")
+            }
         }
         None if is_complete => format!("{state} The plan achieves the whole task."),
         None => format!("{state} PARTIAL: the plan achieves only part of the task."),
