@@ -23,7 +23,7 @@ radius_m = 0.2
 [[obstacles]]
 name = "unseen"
 kind = "circle"
-center_m = [0.0, -0.9]
+center_m = [0.0, 1.5]
 radius_m = 0.15
 known = false
 [robot]
@@ -80,8 +80,9 @@ fn a_mission_with_a_physical_cable_repeats_with_a_shadow_and_with_repairs_and_is
         let reasons: Vec<&str> =
             of_kind(&events, "planned").iter().filter_map(|plan| plan["reason"].as_str()).collect();
         assert!(reasons.len() > 1, "no repair: {reasons:?}");
-        assert!(!of_kind(&events, "better_planned").is_empty(), "{file:?}");
-        assert!(!of_kind(&events, "shadowed").is_empty(), "{file:?}");
+        // The small tank is scanned before a better plan would save time.
+        assert_eq!(of_kind(&events, "better_planned").is_empty(), index == 1, "{}", file.display());
+        assert!(!of_kind(&events, "shadowed").is_empty(), "{}", file.display());
         bench.prove(&run);
         let again = bench.fly(file, &more).json();
         assert_eq!(flown["events_sha256"], again["events_sha256"]);

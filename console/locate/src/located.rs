@@ -322,7 +322,10 @@ impl Task<'_> {
         let swept = tool.map(|(track, grid)| Swept { tool: config.tool(), track, grid });
         let track = self.track(survey, swept, &mut take)?;
         let reason = format!("end of {}", self.shown);
-        take(&[track.event(EventKind::Ended { outcome: Outcome::Complete, reason })]);
+        // The last pulse test may come after the last position.
+        let last_s = survey.pulses.last().map_or(track.t_s, |pulsed| pulsed.t_s - survey.first_s);
+        let kind = EventKind::Ended { outcome: Outcome::Complete, reason };
+        take(&[Event { tick: track.tick, t_s: track.t_s.max(last_s), kind }.rounded()]);
         Ok(track.doubts)
     }
 

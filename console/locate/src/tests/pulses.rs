@@ -207,4 +207,5 @@ fn a_pulse_test_after_the_run_does_not_lengthen_the_track() {
     assert!(is_at(|kind| matches!(kind, EventKind::Estimated { .. }), 30.0));
     assert!(is_at(|kind| matches!(kind, EventKind::PulsesTested { .. }), 90.0));
     assert!(tally.error_95_m.is_some_and(|[_, most_m]| most_m < 30.0), "{tally:?}");
+    assert!(events.windows(2).all(|pair| pair[0].t_s <= pair[1].t_s && pair[0].tick <= pair[1].tick));
 }
