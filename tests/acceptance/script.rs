@@ -16,7 +16,7 @@ fn a_script_flies_a_mission_and_demands_its_result() {
         "# the demo, held once\nspeed max\nstart\nkey enter\nwait until phase running within 1m\nhold\n\
          wait until phase held\nassert text \"HELD by operator\"\nassert not coverage >= 90\nresume\nkey enter\nspeed max\n\
          wait until screen result within 2m\nassert phase complete\nassert coverage >= 80\nverify latest\n\
-         wait until text \": equal: \" within 2m\n",
+         wait until text \" verified: all \" within 2m\n",
     );
     assert_eq!(ended.code, Some(0), "{ended:?}");
     bench.prove(&bench.runs()[0]);
