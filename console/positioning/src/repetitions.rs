@@ -16,7 +16,7 @@ const SIGNIFICANT: f64 = 5.0;
 ///
 /// ```
 /// let mut copies = positioning::Repetitions::default();
-/// (0..5).for_each(|_| copies.take(&[(7.0, 1), (7.0, 1), (7.0, 1), (7.0, 1)], 0.01));
+/// (0..30).for_each(|_| copies.take(&[(7.0, 1), (7.0, 1), (7.0, 1), (7.0, 1)], 0.01));
 /// assert!(copies.are_narrow() && !copies.are_wide());
 /// ```
 #[derive(Debug, Clone, Copy, Default)]
