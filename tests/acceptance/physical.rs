@@ -58,7 +58,7 @@ fn scenarios(bench: &Bench) -> [PathBuf; 2] {
     [scenario("cover-heavy-cable.toml"), bench.file("own.toml", OWN)]
 }
 
-/// Checks that the cable was no hindrance, and that its line was recorded.
+/// Checks that the mission is complete without snags or crossings of the cable, and that the line of the cable is recorded.
 fn is_whole(flown: &Value, run: &Path) {
     let events = journal(run);
     assert_eq!(flown["outcome"], "complete", "{flown}");

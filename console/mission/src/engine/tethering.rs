@@ -56,7 +56,7 @@ impl Known {
         }
     }
 
-    /// The way home along the cable that leaves the most room; `None` at the anchor, or if there is no return path.
+    /// Returns the way home along the cable with the most room for the hull; `None` at the anchor, or without a return path.
     pub(super) fn way_to_anchor(&self) -> Option<Vec<Point>> {
         let (here, tether) = (self.locator.position(), self.tether.as_ref()?);
         let is_out = self.task_ends_at_anchor() && (here - tether.anchor()).norm() > HOME_M;

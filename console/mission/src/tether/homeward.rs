@@ -38,7 +38,7 @@ impl Tether {
         self.pull_needed_n().zip(self.config.reel).is_some_and(|(needed_n, reel)| needed_n > reel.pull_n)
     }
 
-    /// The way beside a return path; the return path itself if there is no room beside it.
+    /// Returns the way beside a return path; the return path itself if the hull does not fit beside it.
     fn aside(&self, home: Vec<Point>, world: &World, room_m: f64) -> Vec<Point> {
         let map = ObstacleMap::new(&world.boundary, &world.obstacles);
         let by_m = self.hull_m + GAP_M;
@@ -55,8 +55,8 @@ impl Tether {
     }
 }
 
-/// A way beside another one, on the outer side of its bends; beside a straight way, to the `left` of it or to the right. Where
-/// there is no room, it is nearer to the other way. It begins and ends with the other way.
+/// Returns a way beside another one, on the outer side of its bends; beside a straight way, to the `left` of it or to the
+/// right. Where the hull does not fit, it runs closer to the other way. Both ways share their ends.
 fn beside(way: &[Point], left: bool, by_m: f64, has_room: impl Fn(Point) -> bool) -> Vec<Point> {
     let sides = sides(way, left);
     let (Some(first), Some(last)) = (way.first(), way.last()) else { return Vec::new() };

@@ -85,7 +85,7 @@ fn why_unprotected(risk: &Risk, stations: &[Station]) -> Option<Unprotected> {
     risk.multipliers(stations.len(), false).is_none().then_some(Unprotected::TooRisky)
 }
 
-/// Warns if the scenario expects so many faults that no protection level exists.
+/// Warns if the fault rate of the scenario makes every protection level impossible.
 pub fn risk_warning(mission: &MissionConfig, drawing: &World) -> Option<String> {
     let risk = mission.locating.risk?;
     let stations = drawing.stations.len();

@@ -117,7 +117,8 @@ fn placed(model: &Model, area: Rect, result: &RunResult) -> Vec<(Pane, Rect)> {
     panes
 }
 
-/// Whether the figures and the shares of the floor do not fit beside the map above so many rows for the missed areas.
+/// Whether the column beside the map is too short for all figures and shares of the floor if the missed areas take this
+/// number of rows.
 fn are_figures_cut(model: &Model, area: Rect, result: &RunResult, missed_rows: u16) -> bool {
     let columns = SIDE[1] - 2;
     let needed = figures::rows(model, result, columns) + floor::least(model, result, columns) + 2;
