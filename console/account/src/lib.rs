@@ -54,7 +54,7 @@ pub use mission::clock;
 pub use notes::Notes;
 pub use overlap::Overlap;
 pub use passes::Passes;
-pub use ranging::{Biased, Calibrated, Calibration, PulseRecord, StationClock, not_as_surveyed};
+pub use ranging::{Biased, Calibrated, Calibration, PulseRecord, Ranging, StationClock, not_as_surveyed};
 pub use readings::{
     Detection, Detections, Finding, Imported, Judge, LOSS_CLASSES, PlateThickness, Reading, ReadingsSummary,
     Survey, Track, Whereabouts,

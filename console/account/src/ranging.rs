@@ -3,7 +3,7 @@
 use crate::clock;
 use mission::{
     ClockOffset, EventKind,
-    event::{PulsePhase, bias_text, change_text, pulse_text},
+    event::{PulsePhase, bias_text, change_text, pulse_failure_text, pulse_text},
 };
 use positioning::{Estimated, Integrity, PulseError, PulseTest, SoundSpeed};
 use serde::{Deserialize, Serialize};
@@ -155,11 +155,13 @@ pub fn not_as_surveyed(tests: &[PulseRecord]) -> Option<String> {
 
 /// Collects the errors of the ranges from the events of a run.
 #[derive(Debug, Default)]
-pub(crate) struct Ranging {
+pub struct Ranging {
     stations: Vec<Station>,
     sound_speed: SoundSpeed,
     estimates: Option<(Option<Calibrated>, Calibrated)>,
     biased: Vec<(StationId, Biased)>,
+    /// Mission time since which a bias and an error of the speed of sound cannot be told apart, seconds.
+    not_separable_since_s: Option<f64>,
     clocks: Vec<ClockOffset>,
     pulse_tests: Vec<PulseRecord>,
     /// The last test that corrects ranges.
@@ -168,12 +170,12 @@ pub(crate) struct Ranging {
 
 impl Ranging {
     /// Nothing is known about the ranges of these stations yet.
-    pub(crate) fn new(stations: &[Station], sound_speed: SoundSpeed) -> Self {
+    pub fn new(stations: &[Station], sound_speed: SoundSpeed) -> Self {
         Self { stations: stations.to_vec(), sound_speed, ..Self::default() }
     }
 
     /// Adds an event at a mission time, seconds.
-    pub(crate) fn apply(&mut self, t_s: f64, kind: &EventKind) {
+    pub fn apply(&mut self, t_s: f64, kind: &EventKind) {
         match kind {
             EventKind::SessionCalibrated { scale, .. } => {
                 let last = Calibrated { t_s, scale: *scale };
@@ -194,6 +196,8 @@ impl Ranging {
                 self.biased.push((*station, biased));
             }
             EventKind::StationUnbiased { station } => self.end_bias(*station, t_s),
+            EventKind::NotSeparable { .. } => self.not_separable_since_s = Some(t_s),
+            EventKind::Separable => self.not_separable_since_s = None,
             EventKind::ClocksEstimated { offsets } => self.clocks.clone_from(offsets),
             EventKind::PulsesTested { phase, test } => self.test(t_s, *phase, Ok(test)),
             EventKind::PulsesFailed { phase, why } => self.test(t_s, *phase, Err(*why)),
@@ -211,7 +215,7 @@ impl Ranging {
         let t_s = Some(t_s);
         let record = match test {
             Err(why) => {
-                let found = format!("pulse test {} failed: {why}", phase.words());
+                let found = pulse_failure_text(phase, why, &self.stations);
                 PulseRecord { found, agrees: false, contradicts: false, t_s }
             }
             Ok(test) => {
@@ -235,10 +239,16 @@ impl Ranging {
     }
 
     /// The session calibration; `None` if the mission makes none.
-    pub(crate) fn calibration(&self) -> Option<Calibration> {
+    pub fn calibration(&self) -> Option<Calibration> {
         let biased = self.biased.iter().map(|(_, biased)| biased.clone()).collect();
         let (first, last) = self.estimates?;
         Some(Calibration { sound_speed: self.sound_speed, first, last, biased })
+    }
+
+    /// Mission time since which a bias and an error of the speed of sound cannot be told apart, seconds; `None` if they
+    /// can.
+    pub fn not_separable_since_s(&self) -> Option<f64> {
+        self.not_separable_since_s
     }
 
     /// The clocks of the stations; empty if they share one.

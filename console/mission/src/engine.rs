@@ -174,7 +174,7 @@ impl Mission {
         let before = self.known.locator.pose();
         let judged = self.known.channels.judge(input.readings.dead_channels.as_deref());
         self.happened.extend(judged.map(EventKind::ChannelsJudged));
-        let located = self.known.locator.take(input.readings);
+        let located = self.known.locator.take(input.readings, self.known.now_s());
         self.happened.extend(located);
         self.happened.extend(self.known.take_pressure(input.readings.pressure_pa));
         self.known.take_scan(input.readings, input.age_s);

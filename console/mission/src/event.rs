@@ -27,7 +27,7 @@ pub use effort::Effort;
 pub use log_line::{LogLine, late_text};
 pub use measured::{Asked, Measured, ToolTrack};
 pub use offer::{OfferEnd, OfferStage, PlanScan, PlanScans};
-pub use pulse::{PulsePhase, bias_text, change_text, pulse_text};
+pub use pulse::{PulsePhase, bias_text, change_text, pulse_error_text, pulse_failure_text, pulse_text};
 pub use recorded::RecordedAnswers;
 pub(crate) use rounding::rounded_command;
 pub use run_opened::RunOpened;
@@ -260,12 +260,15 @@ pub enum EventKind {
         /// Id of the station.
         station: StationId,
     },
-    /// The last fixes cannot tell a bias of a station from an error of the speed of sound.
+    /// The last fixes cannot tell a bias of a station from an error of the speed of sound, or the biases of two stations.
     NotSeparable {
-        /// The correlation of the two errors, 0 to 1.
+        /// The largest correlation of a bias with the error of the speed of sound, 0 to 1.
         correlation: f64,
+        /// Two stations of which one is wrong; absent if no bias is significant.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        stations: Option<[StationId; 2]>,
     },
-    /// The last fixes can tell the two errors apart again.
+    /// The last fixes can tell these errors apart again.
     Separable,
     /// The position error grew beyond the limit, or the fixes stopped.
     PositionLost {

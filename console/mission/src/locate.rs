@@ -37,6 +37,8 @@ pub struct Locator {
     pulses: PulseTests,
     /// The calibration from the last fixes; `None` if the scenario asks for none.
     session: Option<Session>,
+    /// The doubt about the ranges, without that of the session calibration.
+    doubt: Doubt,
     limit_m: f64,
     tick_s: f64,
     /// The largest speed and turn rate of the robot, metres and radians per second.
@@ -80,9 +82,10 @@ impl Locator {
         Self {
             protection: locating.risk.map(|risk| Protection::new(&positioner, risk)),
             pulses: PulseTests::new(locating, positioner.noise, &drawing.stations),
-            session: locating.session.map(|how| Session::new(how, &positioner, config.tick_s)),
+            session: locating.session.map(|how| Session::new(how, &positioner)),
             positioner: Positioner::new(positioner),
             scan_aid: ScanAid::default(),
+            doubt: Doubt::default(),
             limit_m: config.position_limit_m,
             tick_s: config.tick_s,
             fastest: [config.limits.v_max_m_per_s, config.limits.w_max_rad_per_s],
@@ -115,6 +118,7 @@ impl Locator {
 
     /// Reduces the weight of the ranges in the next cycles.
     pub fn doubt(&mut self, doubt: Doubt) {
+        self.doubt = doubt;
         self.positioner.doubt(doubt);
         self.protection.iter_mut().for_each(|protection| protection.guard.doubt(doubt));
     }
@@ -139,8 +143,8 @@ impl Locator {
         self.scan_aid.keep(matched);
     }
 
-    /// Processes the readings since the last tick; returns the resulting events.
-    pub fn take(&mut self, readings: &Readings) -> Vec<EventKind> {
+    /// Processes the readings since the last tick, at a mission time, seconds; returns the resulting events.
+    pub fn take(&mut self, readings: &Readings, t_s: f64) -> Vec<EventKind> {
         let aided = self.scan_aid.correct(&mut self.positioner);
         if readings.unmeasured_s > 0.0 {
             let [most_m_per_s, most_rad_per_s] = self.fastest;
@@ -153,7 +157,7 @@ impl Locator {
         let mut events: Vec<EventKind> = aided.into_iter().collect();
         events.extend(self.test_stations(&readings.pulses));
         if readings.ranging_cycle {
-            events.extend(self.cycle(readings));
+            events.extend(self.cycle(readings, t_s));
         }
         events.extend(self.protection.iter_mut().flat_map(|protection| protection.events(&self.positioner)));
         events.push(EventKind::Estimated { pose: self.pose_estimate() });
@@ -172,7 +176,7 @@ impl Locator {
         Some(event)
     }
 
-    fn cycle(&mut self, readings: &Readings) -> Vec<EventKind> {
+    fn cycle(&mut self, readings: &Readings, t_s: f64) -> Vec<EventKind> {
         let heard = readings.ranges.iter().filter(|set| !self.unused.contains(&set.station));
         let mut heard: Vec<RangeSet> = heard.cloned().collect();
         if !heard.is_empty() {
@@ -181,13 +185,13 @@ impl Locator {
         self.pulses.correct(&mut heard);
         let mut events = Vec::new();
         if let Some(session) = &mut self.session {
-            events = session.take(&heard, &self.positioner.estimate());
+            events = session.take(&heard, &self.positioner.estimate(), t_s);
         }
         let calibration = self.session.as_ref().map(Session::calibration);
         let mut result = match calibration {
             None => self.positioner.cycle(&heard),
             Some(calibration) => {
-                self.positioner.doubt(calibration.doubt());
+                self.positioner.doubt(self.doubt.beside(calibration.doubt()));
                 self.positioner.cycle(&calibration.corrected(&heard))
             }
         };

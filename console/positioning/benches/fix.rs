@@ -4,9 +4,9 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::Matrix2;
 use positioning::{
-    Aggregation, Bounded, Calibration, Consensus, Differences, Ekf, FixedLag, LinearLs, MotionNoise, Nls,
-    Particles, ParticlesConfig, PositionSolver, Positioner, PositionerConfig, RangeNoise, Risk, Screened,
-    SessionCalibration, SessionConfig, Timing, Unknowns, WeightedLinear, protection::level_m,
+    Aggregation, Bounded, Calibration, Consensus, Differences, Ekf, FixedLag, LinearLs, MotionNoise, Near,
+    Nls, Particles, ParticlesConfig, PositionSolver, Positioner, PositionerConfig, RangeNoise, Risk,
+    Screened, SessionCalibration, SessionConfig, Timing, Unknowns, WeightedLinear, protection::level_m,
 };
 use rand::{RngExt, SeedableRng};
 use std::hint::black_box;
@@ -14,6 +14,7 @@ use world::{Odometry, Point, Pose, RangeSet, Station, StationId};
 
 const NOISE: RangeNoise = RangeNoise::Uniform { ratio: 0.05 };
 const TRUTH: Point = Point::new(3.0, -4.0);
+const NEAR: Near = Near { at: TRUTH, sigma_m: 0.1, heading_sigma_rad: 0.02 };
 
 fn stations() -> Vec<Station> {
     (1..)
@@ -162,7 +163,7 @@ fn differences(criterion: &mut Criterion) {
             |b| {
                 b.iter(|| {
                     t_s += 1.0;
-                    session.take(black_box(&sets), (TRUTH, 0.02), t_s)
+                    session.take(black_box(&sets), NEAR, t_s)
                 });
             },
         );
@@ -188,7 +189,7 @@ fn integrity(criterion: &mut Criterion) {
         criterion.bench_function(&format!("{n} stations, step of the session calibration"), |b| {
             b.iter(|| {
                 t_s += 1.0;
-                session.take(black_box(&sets), (TRUTH, 0.02), t_s)
+                session.take(black_box(&sets), NEAR, t_s)
             });
         });
     }

@@ -63,7 +63,7 @@ pub use quality::{alarm_limit, scatter_limit};
 pub use repetitions::Repetitions;
 pub use screened::Screened;
 pub use session::{CommonError, Session, Verdict, Wrong};
-pub use session_calibration::{Estimated, News, OnBias, SessionCalibration, SessionConfig, SoundSpeed};
+pub use session_calibration::{Estimated, Near, News, OnBias, SessionCalibration, SessionConfig, SoundSpeed};
 pub use sides::{Sides, mirrored};
 pub use solver_kind::SolverKind;
 pub use station_clocks::{ClockConfig, StationClocks};

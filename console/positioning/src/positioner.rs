@@ -55,6 +55,29 @@ impl Doubt {
     fn is_any(&self) -> bool {
         self.is_suspect || self.ratio > 0.0 || self.sigma_m > 0.0
     }
+
+    /// Returns both doubts together; they are independent of each other.
+    #[must_use]
+    pub fn beside(self, other: Self) -> Self {
+        let likely = |doubt: Self| {
+            let sizes = doubt.likely_errors.map(|error| match error {
+                CommonError::Share(share) => [share, 0.0],
+                CommonError::Length(length_m) => [0.0, length_m],
+            });
+            [sizes[0][0].hypot(sizes[1][0]), sizes[0][1].hypot(sizes[1][1])]
+        };
+        let ([share, length_m], [other_share, other_length_m]) = (likely(self), likely(other));
+        Self {
+            ratio: self.ratio.hypot(other.ratio),
+            likely_errors: [
+                CommonError::Share(share.hypot(other_share)),
+                CommonError::Length(length_m.hypot(other_length_m)),
+            ],
+            likely_m: self.likely_m.hypot(other.likely_m),
+            sigma_m: self.sigma_m.hypot(other.sigma_m),
+            is_suspect: self.is_suspect || other.is_suspect,
+        }
+    }
 }
 
 /// The estimated pose of the robot.

@@ -18,8 +18,10 @@ use crate::{
     ekf::MotionNoise,
     fix::Ranging,
     noise::{RangeNoise, Timing},
-    positioner::Doubt,
+    positioner::{Doubt, Estimate},
+    quality::largest_sigma_m,
     session::CommonError,
+    solver_kind::SolverKind,
 };
 use serde::{Deserialize, Serialize};
 use window::{Fitted, Node, Test, Window};
@@ -37,6 +39,13 @@ const CLEARED: f64 = 2.0;
 const SEPARABLE: f64 = 0.9;
 /// The number of fixes before a bias can be detected, and of those without a bias before it is over.
 const LEAST_FIXES: usize = 10;
+/// The least lead of the station whose bias fits best over the next one, in the sum of squared residuals in units of
+/// their variances: the odds are then exp(lead / 2), about 400 to 1.
+const LEAST_LEAD: f64 = 12.0;
+/// The number of stations with the most significant biases that are compared: more would take too long for one cycle.
+const COMPARED: usize = 3;
+/// Number of standard deviations of an expected position within which the true one certainly lies.
+const SURE_SIGMAS: f64 = 4.0;
 /// Number of standard deviations of a station's residuals above which a known bias is estimated again: it has changed.
 const CHANGED: f64 = 5.0;
 
@@ -71,6 +80,13 @@ pub struct SessionConfig {
     pub on_bias: OnBias,
     /// The number of fixes that are kept.
     pub fixes: usize,
+}
+
+impl SessionConfig {
+    /// The least number of stations among which a wrong one shows; an unknown time of emission takes one more.
+    pub const fn least_stations(is_emission_free: bool) -> usize {
+        if is_emission_free { 5 } else { 4 }
+    }
 }
 
 impl Default for SessionConfig {
@@ -111,13 +127,36 @@ pub enum News {
         /// The station.
         station: StationId,
     },
-    /// A bias of some station and an error of the speed of sound cannot be told apart.
+    /// A bias of some station and an error of the speed of sound cannot be told apart, or the biases of two stations.
     NotSeparable {
-        /// Their correlation, 0 to 1.
+        /// The largest correlation of a bias with the error of the speed of sound, 0 to 1.
         correlation: f64,
+        /// Two stations of which one is wrong; `None` if no bias is significant.
+        stations: Option<[StationId; 2]>,
     },
     /// They can be told apart again.
     Separable,
+}
+
+/// The expected place of a cycle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Near {
+    /// The position, tank frame, metres.
+    pub at: Point,
+    /// Its largest standard deviation in any direction, metres.
+    pub sigma_m: f64,
+    /// Standard deviation of the heading, radians.
+    pub heading_sigma_rad: f64,
+}
+
+impl From<&Estimate> for Near {
+    fn from(Estimate { pose, covariance }: &Estimate) -> Self {
+        Self {
+            at: pose.position,
+            sigma_m: largest_sigma_m(&covariance.fixed_view::<2, 2>(0, 0).into_owned()),
+            heading_sigma_rad: covariance[(2, 2)].max(0.0).sqrt(),
+        }
+    }
 }
 
 /// What is known about a station.
@@ -129,6 +168,18 @@ struct Known {
     bias_m: Option<Estimated>,
     /// Time from which the bias is estimated, seconds.
     from_s: f64,
+}
+
+/// The fit of the window with one more biased station.
+#[derive(Debug)]
+struct Trial {
+    station: usize,
+    /// Time from which the bias counts, seconds.
+    from_s: f64,
+    bias_m: Estimated,
+    /// See [`Window::misfit`].
+    misfit: f64,
+    window: Window,
 }
 
 /// Estimates the errors of the ranges from the last fixes of a mission. The same input gives the same estimates.
@@ -151,6 +202,8 @@ pub struct SessionCalibration {
     /// Motion since the last fix: the displacement, and the length of the way, metres.
     moved: (Vector, f64),
     is_separable: bool,
+    /// Cycles in a row in which a bias was significant, but fitted two stations nearly equally well, and these stations.
+    unclear: Option<(usize, [StationId; 2])>,
     is_emission_free: bool,
 }
 
@@ -177,6 +230,7 @@ impl SessionCalibration {
             motion,
             moved: (Vector::zeros(), 0.0),
             is_separable: true,
+            unclear: None,
             is_emission_free: false,
         }
     }
@@ -267,12 +321,11 @@ impl SessionCalibration {
         sets.iter().filter_map(one).collect()
     }
 
-    /// Adds the uncorrected ranges of a cycle at time `t_s`, seconds, near a position with a heading error of this
-    /// standard deviation, radians. Returns what changed.
+    /// Adds the uncorrected ranges of a cycle at time `t_s`, seconds, near an expected place. Returns what changed.
     ///
     /// A cycle with an unusable range, with fewer than three stations (four if emission times are unknown), or at a time that is not later than the last one
     /// changes nothing.
-    pub fn take(&mut self, sets: &[RangeSet], near: (Point, f64), t_s: f64) -> Vec<News> {
+    pub fn take(&mut self, sets: &[RangeSet], near: Near, t_s: f64) -> Vec<News> {
         let Some(node) = self.node(sets, near, t_s) else { return Vec::new() };
         self.moved = (Vector::zeros(), 0.0);
         self.window.push(node);
@@ -284,8 +337,8 @@ impl SessionCalibration {
             self.scale_without[self.turn] = scale;
         }
         self.turn = (self.turn + 1) % self.stations.len();
-        let mut news: Vec<News> = self.separable(&fitted).into_iter().collect();
-        news.extend(self.judge(&fitted));
+        let mut news = self.judge(&fitted);
+        news.extend(self.separable(&fitted));
         news
     }
 
@@ -300,9 +353,11 @@ impl SessionCalibration {
         self.window.fit(self.stations.len(), &active, self.turn)
     }
 
-    fn node(&self, sets: &[RangeSet], (near, heading_sigma_rad): (Point, f64), t_s: f64) -> Option<Node> {
+    fn node(&self, sets: &[RangeSet], expected: Near, t_s: f64) -> Option<Node> {
         let is_later = self.window.last_s().is_none_or(|last_s| t_s > last_s);
         let mut ranges = self.aggregation.aggregate(sets, &self.noise).ok().filter(|_| is_later)?;
+        let Near { heading_sigma_rad, .. } = expected;
+        let near = self.place(&ranges, expected)?;
         let excess_m = if self.is_emission_free { Some(self.excess_m(&ranges, near)?) } else { None };
         self.timing.apply(&mut ranges, &self.noise, excess_m.unwrap_or(0.0));
         let heard = ranges.iter().filter_map(|range| {
@@ -324,6 +379,16 @@ impl SessionCalibration {
         node.settled(self.scale.value, &biases_m)
     }
 
+    /// The expected place; if it is too uncertain to begin from, the place of a fix from the ranges alone. `None` if they
+    /// give no fix.
+    fn place(&self, ranges: &[Ranging], expected: Near) -> Option<Point> {
+        if SURE_SIGMAS * expected.sigma_m <= window::FARTHEST_M {
+            return Some(expected.at);
+        }
+        let solver = if self.is_emission_free { SolverKind::Differences } else { SolverKind::Nls };
+        solver.solve(ranges, &self.stations, &self.noise, None).ok().map(|fix| fix.position)
+    }
+
     /// The median length by which ranges exceed the distances from a place, metres; `None` without any range.
     fn excess_m(&self, ranges: &[Ranging], near: Point) -> Option<f64> {
         let excess_m = |range: &Ranging| {
@@ -335,16 +400,21 @@ impl SessionCalibration {
         all.get(all.len() / 2).copied()
     }
 
-    /// Compares the largest correlation with its limit.
+    /// Compares the largest correlation with its limit, and the time for which a wrong station was unclear.
     fn separable(&mut self, fitted: &Fitted) -> Option<News> {
         if self.window.len() < LEAST_FIXES {
             return None;
         }
         let correlation = fitted.tests.iter().flatten().map(|test| test.correlation).fold(0.0, f64::max);
+        let unclear = self.unclear.filter(|(cycles, _)| *cycles >= LEAST_FIXES);
         let limit = if self.is_separable { NOT_SEPARABLE } else { SEPARABLE };
-        let was_separable = std::mem::replace(&mut self.is_separable, correlation <= limit);
+        let was_separable =
+            std::mem::replace(&mut self.is_separable, correlation <= limit && unclear.is_none());
         match (was_separable, self.is_separable) {
-            (true, false) => Some(News::NotSeparable { correlation }),
+            (true, false) => {
+                let stations = unclear.map(|(_, stations)| stations);
+                Some(News::NotSeparable { correlation, stations })
+            }
             (false, true) => Some(News::Separable),
             _ => None,
         }
@@ -403,29 +473,55 @@ impl SessionCalibration {
         (bias_m.score() >= CLEARED).then_some(News::Biased { station, bias_m, since_s: first_s })
     }
 
-    /// Detects a bias that begins in the window. At most one is detected in a cycle, the most significant one, and never in
+    /// Detects a bias that begins in the window. At most one is detected in a cycle, the one that fits best, and never in
     /// half of the stations: then nothing shows which half is right.
     ///
-    /// The test counts the bias in the whole window, most of which may be from before it began. Once it is detected, the
-    /// window is fitted again with a bias from its onset on, which gives its size.
+    /// The test counts the bias in the whole window, most of which may be from before it began. Therefore the window is
+    /// fitted again with a bias from its onset on, for each of the most significant stations. If two of them fit nearly
+    /// equally well, the next cycles decide.
     fn detected(&mut self, fitted: &Fitted) -> Option<News> {
         let active = self.active();
-        if self.window.len() < LEAST_FIXES || 2 * (active.len() + 1) >= self.stations.len() {
+        let is_testable = self.window.len() >= LEAST_FIXES && 2 * (active.len() + 1) < self.stations.len();
+        let scores = fitted.tests.iter().filter_map(|test| Some(separable_bias_m(*test)?.score()));
+        if !is_testable || scores.fold(0.0, f64::max) <= DETECTED {
+            self.unclear = None;
             return None;
         }
-        let tested = |(station, test): (usize, &Option<Test>)| Some((station, separable_bias_m(*test)?));
-        let found = fitted.tests.iter().enumerate().filter_map(tested);
-        let (station, tested_m) = found.max_by(|a, b| a.1.score().total_cmp(&b.1.score()))?;
-        if tested_m.score() <= DETECTED {
+        // A bias that cannot be told from a wrong speed of sound is not named, but it may be the true cause.
+        let tested =
+            |(station, test): (usize, &Option<Test>)| test.map(|test| (station, test.bias_m.score()));
+        let mut found: Vec<(usize, f64)> = fitted.tests.iter().enumerate().filter_map(tested).collect();
+        found.sort_by(|a, b| b.1.total_cmp(&a.1));
+        found.truncate(COMPARED);
+        let mut trials: Vec<Trial> =
+            found.iter().filter_map(|(station, _)| self.trial(*station, &active)).collect();
+        trials.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
+        let mut trials = trials.into_iter();
+        let best = trials.next()?;
+        let is_separable = separable_bias_m(fitted.tests[best.station]).is_some();
+        let is_clear = |next: &Trial| is_separable && next.misfit - best.misfit >= LEAST_LEAD;
+        if let Some(next) = trials.next().filter(|next| !is_clear(next)) {
+            let cycles = self.unclear.map_or(0, |(cycles, _)| cycles);
+            self.unclear =
+                Some((cycles + 1, [best.station, next.station].map(|index| self.stations[index].id)));
             return None;
         }
+        self.unclear = None;
+        let Trial { station, from_s, bias_m, window, .. } = best;
         let since_s = self.known[station].since_s.unwrap_or(self.window.first_s());
-        let (from_s, _) = self.window.change(station);
-        let with: Vec<(usize, f64)> = active.into_iter().chain([(station, from_s)]).collect();
-        let refitted = self.window.fit(self.stations.len(), &with, self.turn)?;
-        let bias_m = refitted.biases_m.iter().find(|(index, _)| *index == station)?.1;
+        self.window = window;
         self.known[station] = Known { since_s: Some(since_s), bias_m: Some(bias_m), from_s };
         Some(News::Biased { station: self.stations[station].id, bias_m, since_s })
+    }
+
+    /// Fits the window with one more biased station, from the time on that suits its residuals best.
+    fn trial(&self, station: usize, active: &[(usize, f64)]) -> Option<Trial> {
+        let mut window = self.window.clone();
+        let (from_s, _) = window.change(station);
+        let with: Vec<(usize, f64)> = active.iter().copied().chain([(station, from_s)]).collect();
+        let refitted = window.fit(self.stations.len(), &with, self.turn)?;
+        let bias_m = refitted.biases_m.iter().find(|(index, _)| *index == station)?.1;
+        Some(Trial { station, from_s, bias_m, misfit: window.misfit(), window })
     }
 
     /// Follows a detected bias until it is over.

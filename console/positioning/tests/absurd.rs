@@ -79,9 +79,9 @@ impl Taken {
 
     fn take(&mut self, sets: &[RangeSet]) {
         let rest = Odometry::default();
-        let pose = self.positioner.estimate().pose;
-        self.session.predict(&rest, pose.heading_rad);
-        self.session.take(sets, (pose.position, 0.02), self.t_s);
+        let estimate = self.positioner.estimate();
+        self.session.predict(&rest, estimate.pose.heading_rad);
+        self.session.take(sets, (&estimate).into(), self.t_s);
         let corrected = self.session.corrected(sets);
         self.positioner.predict(&rest);
         self.guard.predict(&rest);

@@ -14,9 +14,6 @@ use world::{Boundary, Station, StationId};
 /// drawings are rounded to centimetres.
 const ON_WALL_M: f64 = 0.01;
 
-/// The least number of stations of a session calibration: without one of them, the others must still give a fix.
-const LEAST_STATIONS: usize = 4;
-
 /// Reads `[ae]` except for its stations.
 pub(crate) fn ae(section: &Section<'_>) -> Option<AeConfig> {
     let (period_s, repetitions) = (section.number("period_s"), section.whole("repetitions"));
@@ -115,9 +112,9 @@ fn session(section: &Section<'_>, calibrates_scale: bool, n_stations: usize) -> 
             return None;
         }
     };
-    if n_stations < LEAST_STATIONS {
-        let must_be =
-            format!("\"off\" with fewer than {LEAST_STATIONS} stations: none of them could be tested");
+    let least = SessionConfig::least_stations(false);
+    if n_stations < least {
+        let must_be = format!("\"off\" with fewer than {least} stations: none of them could be tested");
         section.complain("session_calibration", Complaint::OutOfRange(must_be));
     }
     if calibrates_scale {

@@ -52,7 +52,7 @@ fn errors_m(seed: u64, locates: bool) -> Vec<f64> {
     for tick in 0..1300_u32 {
         let t_s = f64::from(tick) * TICK_S;
         let readings = simulator.sense();
-        locator.take(&readings);
+        locator.take(&readings, t_s);
         let estimate = locator.pose_estimate();
         let pose = Pose { position: estimate.position, heading_rad: estimate.heading_rad };
         if let Some(scan) = &readings.scan {

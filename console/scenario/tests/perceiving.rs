@@ -104,7 +104,7 @@ fn drive(scenario: &Scenario, seed: u64, tally: &mut Tally) {
         let mut follower = PathFollower::exact(&way.points());
         for _ in 0..4000 {
             let readings = simulator.sense();
-            locator.take(&readings);
+            locator.take(&readings, tick as f64 * 0.1);
             let estimate = locator.pose_estimate();
             let pose = Pose { position: estimate.position, heading_rad: estimate.heading_rad };
             if let Some(scan) = &readings.scan {

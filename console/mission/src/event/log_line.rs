@@ -2,7 +2,7 @@
 
 use super::{
     Event, EventKind, OfferStage, PlanDropped, PlanMade, PlanTaken, SurveyWay, TetherAlarm, bias_text,
-    pulse_text,
+    pulse_failure_text, pulse_text,
     severity::{self, Severity},
 };
 use crate::engine::side;
@@ -87,17 +87,25 @@ impl Event {
                 line(severity, "ae", pulse_text(*phase, test, stations))
             }
             EventKind::PulsesFailed { phase, why } => {
-                line(Severity::Warn, "ae", format!("pulse test {} failed: {why}", phase.words()))
+                line(Severity::Warn, "ae", pulse_failure_text(*phase, *why, stations))
             }
-            EventKind::NotSeparable { correlation } => {
+            EventKind::NotSeparable { stations: Some([one, other]), .. } => {
+                let [one, other] = [*one, *other].map(|station| station_text(station, stations));
+                let text =
+                    format!("the ranges of {one} or {other} are wrong; the last fixes do not show which");
+                line(Severity::Warn, "ae", text)
+            }
+            EventKind::NotSeparable { correlation, stations: None } => {
                 let text = format!(
                     "station bias and wrong speed of sound not separable (correlation {correlation:.2})"
                 );
                 line(Severity::Warn, "ae", text)
             }
-            EventKind::Separable => {
-                line(Severity::Info, "ae", "station bias and wrong speed of sound separable again".into())
-            }
+            EventKind::Separable => line(
+                Severity::Info,
+                "ae",
+                "wrong stations and a wrong speed of sound are separable again".into(),
+            ),
             EventKind::RangesInconsistent { chi2, degrees_of_freedom } => line(
                 Severity::Crit,
                 "ae",

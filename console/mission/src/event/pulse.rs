@@ -1,6 +1,6 @@
 //! The errors of the stations in words: the pulse test, and biases.
 
-use positioning::{Estimated, Integrity, PulseTest};
+use positioning::{Estimated, Integrity, PulseError, PulseTest};
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
 use world::{Station, StationId};
@@ -57,6 +57,28 @@ pub fn pulse_text(phase: PulsePhase, test: &PulseTest, stations: &[Station]) -> 
     // Writing to a String cannot fail.
     let _ = write!(text, "{found}");
     text
+}
+
+/// Why a pulse test failed, as text with the names of the stations.
+pub fn pulse_error_text(why: PulseError, stations: &[Station]) -> String {
+    let name = |id: StationId| {
+        let known = stations.iter().find(|station| station.id == id);
+        known.map_or_else(|| id.0.to_string(), |station| station.name.clone())
+    };
+    match why {
+        PulseError::Impossible { sender, receiver, length_m, most_m } => format!(
+            "the pulse from station {} to station {} is {length_m:.2} m long, but only lengths from 0 to {most_m:.2} m are \
+             possible; check its unit, and the clocks of both stations",
+            name(sender),
+            name(receiver)
+        ),
+        other => other.to_string(),
+    }
+}
+
+/// A failed pulse test as a sentence.
+pub fn pulse_failure_text(phase: PulsePhase, why: PulseError, stations: &[Station]) -> String {
+    format!("pulse test {} failed: {}", phase.words(), pulse_error_text(why, stations))
 }
 
 /// What the change of the speed of sound between two tests means, as a sentence; `None` if the tests agree.

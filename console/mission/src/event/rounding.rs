@@ -166,7 +166,7 @@ impl EventKind {
                 slip_correlation.iter_mut().for_each(round);
             }
             Self::StationBiased { bias_m, .. } => round_estimated(bias_m),
-            Self::NotSeparable { correlation } => round(correlation),
+            Self::NotSeparable { correlation, .. } => round(correlation),
             Self::PulsesTested { test, .. } => {
                 let offsets = test.offsets_m.iter_mut().map(|(_, offset)| offset);
                 offsets.chain([&mut test.scale]).for_each(round_estimated);

@@ -49,6 +49,7 @@ impl PulseTests {
         if sets.is_empty() {
             return None;
         }
+        let sets = &by_pair(sets);
         let phase = if self.has_ranged { PulsePhase::Held } else { PulsePhase::Before };
         let are_copies = self.are_copies(sets);
         let pulses: Vec<Pulse> = sets.iter().filter_map(|set| self.pulse(set, are_copies)).collect();
@@ -130,6 +131,19 @@ impl PulseTests {
         let sigma_m = (share_m / n.sqrt()).hypot(self.timing.mean_sigma_m(share_m, n));
         (n > 0.0).then_some(Pulse { sender: set.sender, receiver: set.receiver, length_m, sigma_m })
     }
+}
+
+/// Returns the pulses with one set for each pair of sender and receiver: a vehicle may send a pulse in several sets.
+fn by_pair(sets: &[PulseSet]) -> Vec<PulseSet> {
+    let mut pairs: Vec<PulseSet> = Vec::with_capacity(sets.len());
+    for set in sets {
+        let known = pairs.iter_mut().find(|pair| pair.sender == set.sender && pair.receiver == set.receiver);
+        match known {
+            Some(pair) => pair.lengths_m.extend(&set.lengths_m),
+            None => pairs.push(set.clone()),
+        }
+    }
+    pairs
 }
 
 #[cfg(test)]
@@ -230,6 +244,8 @@ mod tests {
             set.lengths_m = vec![set.lengths_m[0]; 30];
         }
         assert!((sigma_of(&copied) / sigma_of(&once) - 1.0).abs() < 1e-9);
+        let rows: Vec<PulseSet> = (0..30).flat_map(|_| once.clone()).collect();
+        assert!((sigma_of(&rows) / sigma_of(&once) - 1.0).abs() < 1e-9);
     }
 
     #[test]

@@ -6,30 +6,26 @@ use positioning::{
 };
 use world::{Odometry, RangeSet};
 
-/// The calibration, with the time of the mission.
+/// The calibration, with the handling of a wrong station.
 #[derive(Clone)]
 pub(super) struct Session {
     calibration: SessionCalibration,
     on_bias: OnBias,
-    tick_s: f64,
-    /// The number of ticks so far; the first one is at time 0.
-    ticks: u64,
 }
 
 impl Session {
     /// Creates the calibration for the positioner with this configuration.
-    pub(super) fn new(config: SessionConfig, positioner: &PositionerConfig, tick_s: f64) -> Self {
+    pub(super) fn new(config: SessionConfig, positioner: &PositionerConfig) -> Self {
         let PositionerConfig { stations, aggregation, noise, timing, odometry, solver, .. } = positioner;
         let ways = (*aggregation, *noise, *timing);
         let plain = SessionCalibration::new(config, stations, ways, *odometry);
         let is_free = *solver == SolverKind::Differences;
         let calibration = if is_free { plain.with_free_emission() } else { plain };
-        Self { calibration, on_bias: config.on_bias, tick_s, ticks: 0 }
+        Self { calibration, on_bias: config.on_bias }
     }
 
     /// Adds the motion of a tick, which begins with this heading, radians.
     pub(super) fn predict(&mut self, odometry: &Odometry, heading_rad: f64) {
-        self.ticks += 1;
         self.calibration.predict(odometry, heading_rad);
     }
 
@@ -38,18 +34,16 @@ impl Session {
         self.calibration.wander(most_m);
     }
 
-    /// Adds the ranges of a cycle; returns the resulting events.
-    pub(super) fn take(&mut self, sets: &[RangeSet], estimate: &Estimate) -> Vec<EventKind> {
-        let heading_sigma_rad = estimate.covariance[(2, 2)].max(0.0).sqrt();
-        let near = (estimate.pose.position, heading_sigma_rad);
-        let news = self.calibration.take(sets, near, self.ticks.saturating_sub(1) as f64 * self.tick_s);
+    /// Adds the ranges of a cycle at a time, seconds; returns the resulting events.
+    pub(super) fn take(&mut self, sets: &[RangeSet], estimate: &Estimate, t_s: f64) -> Vec<EventKind> {
+        let news = self.calibration.take(sets, estimate.into(), t_s);
         let is_corrected = self.on_bias == OnBias::Correct;
         let event = |news| match news {
             News::Biased { station, bias_m, since_s } => {
                 EventKind::StationBiased { station, bias_m, since_s, is_corrected }
             }
             News::Sound { station } => EventKind::StationUnbiased { station },
-            News::NotSeparable { correlation } => EventKind::NotSeparable { correlation },
+            News::NotSeparable { correlation, stations } => EventKind::NotSeparable { correlation, stations },
             News::Separable => EventKind::Separable,
         };
         let scale = self.calibration.scale();

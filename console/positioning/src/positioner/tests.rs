@@ -188,3 +188,24 @@ fn single_repetitions_close_to_a_station_do_not_mislead_the_estimate() {
     assert!(worst < 0.35, "{worst}");
     assert!(inside > 1900, "{inside}");
 }
+
+#[test]
+fn two_doubts_add_up_as_independent_errors() {
+    let one = Doubt {
+        likely_errors: [CommonError::Share(0.03), CommonError::Length(0.3)],
+        likely_m: 0.3,
+        ..Doubt::default()
+    };
+    let other = Doubt {
+        ratio: 0.1,
+        likely_errors: [CommonError::Share(0.04), CommonError::default()],
+        likely_m: 0.4,
+        sigma_m: 0.2,
+        is_suspect: true,
+    };
+    let both = one.beside(other);
+    assert_eq!(both, other.beside(one));
+    assert_eq!(one.beside(Doubt::default()), one);
+    assert_eq!(both.likely_errors, [CommonError::Share(0.05), CommonError::Length(0.3)]);
+    assert_eq!((both.ratio, both.likely_m, both.sigma_m, both.is_suspect), (0.1, 0.5, 0.2, true));
+}

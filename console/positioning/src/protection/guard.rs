@@ -33,6 +33,8 @@ const DISPROVED_AFTER: u32 = 5;
 pub struct Guard {
     risk: Risk,
     others: Vec<Other>,
+    /// The doubt about the ranges, without that of the session calibration.
+    doubt: Doubt,
     /// The least number of stations of a level.
     needed: usize,
     is_on_line: bool,
@@ -57,11 +59,15 @@ struct Other {
 
 impl Other {
     /// Takes a cycle; returns whether it contains the station and fits the hypothesis that this station alone is wrong.
-    fn explains(&mut self, sets: &[RangeSet], session: Option<&SessionCalibration>) -> bool {
+    fn explains(
+        &mut self,
+        sets: &[RangeSet],
+        (session, doubt): (Option<&SessionCalibration>, Doubt),
+    ) -> bool {
         let heard = match session {
             None => sets.iter().filter(|set| set.station != self.station).cloned().collect(),
             Some(session) => {
-                self.positioner.doubt(session.doubt_without(self.station));
+                self.positioner.doubt(doubt.beside(session.doubt_without(self.station)));
                 session.corrected_without(self.station, sets)
             }
         };
@@ -82,6 +88,7 @@ impl Guard {
         Self {
             risk,
             others: config.stations.iter().map(other).collect(),
+            doubt: Doubt::default(),
             // The unknown time of emission takes one more.
             needed: NEEDED + usize::from(config.solver == SolverKind::Differences),
             is_on_line: are_on_line(&config.stations),
@@ -105,6 +112,7 @@ impl Guard {
 
     /// Reduces the trust in the following cycles; see [`Positioner::doubt`].
     pub fn doubt(&mut self, doubt: Doubt) {
+        self.doubt = doubt;
         self.others.iter_mut().for_each(|other| other.positioner.doubt(doubt));
     }
 
@@ -126,7 +134,7 @@ impl Guard {
         let is_alone = whole.as_ref().map_or(true, |fix| rejected(fix) <= 1);
         let mut is_explained = is_alone && !contradicts(whole);
         for other in &mut self.others {
-            is_explained |= other.explains(sets, session);
+            is_explained |= other.explains(sets, (session, self.doubt));
         }
         // If two stations were found wrong at once, it is uncertain which two.
         let is_one = session.is_none_or(|session| session.biases_m().count() <= 1);

@@ -26,7 +26,7 @@ const HUBER: f64 = 3.0;
 /// Number of standard deviations beyond which a range counts as an outlier of its cycle.
 const OUTLIER: f64 = 30.0;
 /// Largest distance of a fix from the expected position, metres: ranges that lead further away cannot be right.
-const FARTHEST_M: f64 = 5.0;
+pub(super) const FARTHEST_M: f64 = 5.0;
 /// The least number of ranges of a fix; an unknown time of emission needs one more.
 const LEAST_RANGES: usize = 3;
 /// The shortest distance to a station that is used, metres.
@@ -83,6 +83,12 @@ impl Heard {
 fn weight(size: f64, sigma: f64) -> f64 {
     let full = sigma.powi(-2);
     if size > HUBER * sigma { full * HUBER * sigma / size } else { full }
+}
+
+/// Twice the loss of a residual with this standard deviation: its square, and linear beyond [`HUBER`] (Huber 1964).
+fn loss(size: f64, sigma: f64) -> f64 {
+    let ratio = size / sigma;
+    if ratio > HUBER { HUBER * (2.0 * ratio - HUBER) } else { ratio * ratio }
 }
 
 impl Node {
@@ -373,6 +379,24 @@ impl Window {
             system.link(index, (node.moved, off), weight(off.norm(), node.moved_sigma_m));
         }
         system
+    }
+
+    /// The sum of the squared residuals of ranges and motions, in units of their variances. Large ones count less, as in the
+    /// fit.
+    pub(super) fn misfit(&self) -> f64 {
+        let motions = self.nodes.iter().zip(self.nodes.iter().skip(1)).map(|(before, node)| {
+            let off_m = (node.at - before.at - node.moved * (1.0 - self.slip)).norm();
+            loss(off_m, node.moved_sigma_m)
+        });
+        let ranges = self.nodes.iter().map(|node| {
+            let stretch = self.stretch_at(node.t_s);
+            let heard = node.heard.iter().map(|heard| {
+                let bias_m = self.bias_at(heard.station, node.t_s).unwrap_or(0.0);
+                loss(node.seen(heard, stretch, bias_m).residual_m.abs(), heard.sigma_m)
+            });
+            heard.sum::<f64>()
+        });
+        motions.sum::<f64>() + ranges.sum::<f64>()
     }
 
     /// The bias that the ranges of a station have at a time; `None` before the time from which it counts.

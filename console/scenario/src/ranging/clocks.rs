@@ -2,7 +2,7 @@
 
 use crate::{problem::Complaint, section::Section};
 use mission::{Locating, OwnClocks};
-use positioning::{SolverKind, are_on_line, station_clocks};
+use positioning::{SessionConfig, SolverKind, are_on_line, station_clocks};
 use sim::Clocks;
 use world::Station;
 
@@ -11,9 +11,6 @@ use world::Station;
 const LEAST_STATIONS: usize = 4;
 /// The least number of stations for a protection level from differences: the others must still give a fix without one.
 const LEAST_PROTECTED: usize = 5;
-/// The least number of stations of a session calibration from differences: without one of them, the others must still
-/// give a fix.
-const LEAST_SESSION: usize = 5;
 
 /// The keys that describe the clocks of the stations.
 const CLOCK_KEYS: [&str; 2] = ["clock_offset_sigma_m", "clock_drift_sigma_m_per_h"];
@@ -74,18 +71,17 @@ pub(super) fn check(section: &Section<'_>, stations: &[Station]) {
 
 /// Refuses a session calibration that cannot tell a bias from an unknown clock, or that cannot test any station.
 fn check_session(n: usize, has_own: bool, complain: impl Fn(&str, String)) {
+    let least = SessionConfig::least_stations(true);
     if has_own {
         let why =
             "a bias of a station and the offset of its clock shift the same arrivals by the same length";
         let keys = format!("{} or {}", CLOCK_KEYS[0], CLOCK_KEYS[1]);
         complain("session_calibration", format!("\"off\" with {keys}: {why}"));
-    } else if n < LEAST_SESSION {
+    } else if n < least {
         let why = "without one of them, the others give no fix";
         complain(
             "session_calibration",
-            format!(
-                "\"off\" with fewer than {LEAST_SESSION} stations and emission_time = \"unknown\": {why}"
-            ),
+            format!("\"off\" with fewer than {least} stations and emission_time = \"unknown\": {why}"),
         );
     }
 }

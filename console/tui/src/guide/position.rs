@@ -57,10 +57,10 @@ pub(super) const BIAS: Guide = Guide {
 };
 
 pub(super) const NOT_SEPARABLE: Guide = Guide {
-    cause: "At the places of the last fixes, a station with a bias looks like a wrong speed of sound: too few stations \
-    are heard, or the robot moved too little.",
+    cause: "At the places of the last fixes, a station with a bias looks like a wrong speed of sound, or like another \
+    station with a bias: too few stations are heard, or the robot moved too little.",
     holds: "",
-    effect: "A bias of a station is not detected meanwhile.",
+    effect: "A station with a bias is not excluded meanwhile. Once it is found, floor scanned since then loses its guarantee.",
     remedies: &[wait("Wait until the robot has moved on."), HOLD],
 };
 

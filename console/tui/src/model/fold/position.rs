@@ -1,7 +1,7 @@
 //! Folds position events into a run.
 
 use crate::model::{Cause, Change, Run, Withdrawn, position};
-use mission::{Channels, Event, EventKind, Passage, Severity};
+use mission::{Channels, Event, EventKind, Passage, Severity, event::pulse_error_text};
 use planner_api::PoseEstimate;
 use positioning::{Exclusion, Integrity};
 use world::Pose;
@@ -49,7 +49,7 @@ impl Run {
                 }
             }
             EventKind::PulsesFailed { why, .. } => {
-                self.position.pulses = Some(Err(why.to_string()));
+                self.position.pulses = Some(Err(pulse_error_text(*why, self.stations())));
                 self.raise_as_logged(event, Cause::Pulses);
             }
             EventKind::StationBiased { station, .. } => {

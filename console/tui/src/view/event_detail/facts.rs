@@ -6,7 +6,7 @@ use crate::view::fields::Field;
 use crate::view::text;
 use mission::{
     EventKind, PlannerChoice, PlannerInfo, Resumes,
-    event::{Effort, PlanDropped, PlanMade, PlanTaken, PulsePhase, TetherAlarm},
+    event::{Effort, PlanDropped, PlanMade, PlanTaken, PulsePhase, TetherAlarm, pulse_error_text},
 };
 use planner_api::Reason;
 use positioning::{Exclusion, FixError, PulseTest, Ranging};
@@ -140,9 +140,14 @@ fn of_event(run: &Run, event: &Occurrence) -> Vec<Field> {
         EventKind::StationUnbiased { station } => vec![("station", station_text(run, *station))],
         EventKind::PulsesTested { phase, test } => pulse_facts(run, *phase, test),
         EventKind::PulsesFailed { phase, why } => {
-            vec![("when", phase.words().to_owned()), ("reason", why.to_string())]
+            vec![("when", phase.words().to_owned()), ("reason", pulse_error_text(*why, run.stations()))]
         }
-        EventKind::NotSeparable { correlation } => vec![("correlation", text::number(*correlation, 2))],
+        EventKind::NotSeparable { correlation, stations } => {
+            let wrong = stations.map(|[one, other]| {
+                ("wrong", format!("{} or {}", station_text(run, one), station_text(run, other)))
+            });
+            wrong.into_iter().chain([("correlation", text::number(*correlation, 2))]).collect()
+        }
         EventKind::RangesInconsistent { chi2, degrees_of_freedom } => {
             let limit = positioning::alarm_limit((*degrees_of_freedom).max(1));
             let text =
