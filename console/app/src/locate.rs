@@ -8,7 +8,7 @@ use crate::{
     output::{check_free, fill_file},
 };
 use ::locate::{Doubts, Fixes, Pulsed, Refused, Survey, Tally, Task};
-use account::{Expect, PlannerCalls};
+use account::{Calibration, Expect, PlannerCalls, Ranging};
 use command::json::say_json;
 use flight::{
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input, exit_code},
@@ -42,6 +42,9 @@ struct Figures<'a> {
     range_scale: Option<[f64; 2]>,
     /// The length in metres by which ranges were too long because of the clock offset, and its standard deviation.
     clock_offset_m: Option<[f64; 2]>,
+    /// The speed of sound and the wrong stations that the session calibration has found; absent without it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    calibration: Option<Calibration>,
     /// The systematic errors that the residuals of the whole session reveal, once the estimated errors are removed.
     session: Session<'a>,
     /// Emissions with several readings of the same station.
@@ -156,14 +159,18 @@ pub(crate) fn locate(args: &LocateArgs) -> anyhow::Result<ExitCode> {
         [&args.readings, &args.scenario].into_iter().chain(&args.tool_on).map(PathBuf::as_path).collect();
     args.output.as_ref().map_or(Ok(()), |file| check_free(file, Some(args.force), &inputs))?;
     let survey = task.survey()?;
+    let mut ranging =
+        Ranging::new(&scenario.sim.world.stations, survey.session.unwrap_or_default().sound_speed);
     let (tally, doubts, kept) = match &args.output {
-        Some(file) => fill_file("the fixes", file, |out| located(args, &task, &survey, Some(out)))?,
-        None => located(args, &task, &survey, None)?,
+        Some(file) => {
+            fill_file("the fixes", file, |out| located((args, &task, &survey), &mut ranging, Some(out)))?
+        }
+        None => located((args, &task, &survey), &mut ranging, None)?,
     };
     if args.json {
-        say_json("the results", &figures(args, &scenario, &survey, (&tally, &doubts)))?;
+        say_json("the results", &figures(args, &scenario, &survey, (&tally, &doubts, &ranging)))?;
     } else {
-        say(&words::human(args, &scenario, &survey, (&tally, &doubts), readings.shown()))?;
+        say(&words::human(args, &scenario, &survey, (&tally, &doubts, &ranging), readings.shown()))?;
     }
     match &kept {
         Some(kept) if kept.problem().is_some() => warn_line(&kept.text()),
@@ -176,9 +183,8 @@ pub(crate) fn locate(args: &LocateArgs) -> anyhow::Result<ExitCode> {
 
 /// Locates the robot, and writes the fixes to a file if one is wanted.
 fn located(
-    args: &LocateArgs,
-    task: &Task,
-    survey: &Survey,
+    (args, task, survey): (&LocateArgs, &Task, &Survey),
+    ranging: &mut Ranging,
     out: Option<&mut File>,
 ) -> anyhow::Result<(Tally, Doubts, Option<Kept>)> {
     let scenario = task.scenario;
@@ -192,6 +198,7 @@ fn located(
     let (mut tally, mut refused) = (Tally::default(), None);
     let doubts = task.locate(survey, |events: &[Event]| {
         tally.take(events);
+        events.iter().for_each(|event| ranging.apply(event.t_s, &event.kind));
         if let Some(log) = &mut log {
             log.keep(events);
         }
@@ -211,7 +218,7 @@ fn figures<'a>(
     args: &LocateArgs,
     scenario: &'a Scenario,
     survey: &'a Survey,
-    (tally, doubts): (&'a Tally, &'a Doubts),
+    (tally, doubts, ranging): (&'a Tally, &'a Doubts, &Ranging),
 ) -> Figures<'a> {
     let pair = |(value, sigma): (f64, f64)| [value, sigma];
     let found = |what| survey.calibration.as_ref().filter(|_| args.find.contains(&what));
@@ -227,6 +234,7 @@ fn figures<'a>(
             .map(|([scale, sigma], speed)| [speed / (1.0 + scale), speed * sigma]),
         range_scale: scale,
         clock_offset_m: found(FindArg::ClockOffset).map(|calibration| pair(calibration.offset_m())),
+        calibration: ranging.calibration(),
         session: session(scenario, survey),
         repeated_readings: repeated(scenario, survey),
         pulse_tests: survey.pulses.iter().map(|pulsed| pulsed_figures(scenario, survey, pulsed)).collect(),

@@ -11,7 +11,7 @@ use std::io::{self, Write};
 use world::{Point, Pose, Station};
 
 const HEADER: &str = "t_s,fix_x_m,fix_y_m,fix_xx_m2,fix_xy_m2,fix_yy_m2,fix_95_m,integrity,stations,left_out,chi2,gdop,\
-    protection_m,why_none,x_m,y_m,heading_rad,xx_m2,xy_m2,yy_m2,error_95_m,true_x_m,true_y_m\n";
+    protection_m,why_none,x_m,y_m,heading_rad,xx_m2,xy_m2,yy_m2,error_95_m,pose_protection_m,true_x_m,true_y_m\n";
 
 /// Writes the table from the events of each moment.
 pub struct Fixes<W: Write> {
@@ -34,13 +34,14 @@ impl<W: Write> Fixes<W> {
     /// # Errors
     /// The table cannot be written.
     pub fn take(&mut self, events: &[Event]) -> io::Result<()> {
-        let (mut fix, mut truth, mut estimate) = (None, None, None);
+        let (mut fix, mut truth, mut estimate, mut level) = (None, None, None, None);
         for event in events {
             match &event.kind {
                 EventKind::Fixed { fix: found } => fix = Some((event.t_s, Ok(found))),
                 EventKind::FixFailed { error, .. } => fix = Some((event.t_s, Err(error.to_string()))),
                 EventKind::Truth { pose, .. } => truth = Some(*pose),
                 EventKind::Estimated { pose } => estimate = Some(pose),
+                EventKind::Protected { level_m } => level = *level_m,
                 _ => {}
             }
         }
@@ -53,7 +54,8 @@ impl<W: Write> Fixes<W> {
         let Point { coords: at } = pose.position;
         let [xx, xy, yy] = [(0, 0), (0, 1), (1, 1)].map(|at| pose.covariance[at]);
         let error_m = ellipse_95(&position_covariance(&pose.covariance)).0;
-        write!(self.out, ",{},{},{},{xx},{xy},{yy},{error_m}", at.x, at.y, pose.heading_rad)?;
+        let level = level.map(|level_m| level_m.to_string()).unwrap_or_default();
+        write!(self.out, ",{},{},{},{xx},{xy},{yy},{error_m},{level}", at.x, at.y, pose.heading_rad)?;
         match truth {
             Some(Pose { position, .. }) => writeln!(self.out, ",{},{}", position.x, position.y),
             None => writeln!(self.out, ",,"),

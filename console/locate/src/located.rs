@@ -17,11 +17,14 @@ use mission::{
     Event, EventKind, Locator, MissionConfig, Outcome, PlannerChoice,
     event::{Asked, Measured, ToolTrack},
 };
-use positioning::{Agreement, CommonError, Doubt, Possible, PulseSeries, RangeNoise, SolverKind, Verdict};
+use positioning::{
+    Agreement, CommonError, Doubt, Possible, PulseSeries, RangeNoise, SessionConfig, SolverKind, Verdict,
+};
 use scenario::Scenario;
 use std::path::Path;
 use world::{CoverageGrid, ObstacleMap, RangeSet, StationId, Tool};
 
+mod calibrating;
 mod learning;
 
 /// The number of bad rows that an error lists.
@@ -88,6 +91,9 @@ pub struct Survey {
     pub verdict: Verdict,
     /// The scatter of several readings of one station in one emission.
     pub repeats: Repeats,
+    /// The calibration of this session; `None` if the scenario asks for none, has too few stations for it, or if all ranges
+    /// are wrong by one length, which it does not estimate.
+    pub session: Option<SessionConfig>,
     /// The pulse tests of the stations, in chronological order; their corrections are used.
     pub pulses: Vec<Pulsed>,
     /// The first time in the file, as written there, seconds.
@@ -180,7 +186,9 @@ impl Task<'_> {
             found => found,
         };
         let by_pulses = pulse_series.sigmas().unwrap_or_default();
-        let verdict = self.judged(known, assumed.as_ref())?.verdict().beside(by_pulses);
+        let whole = self.judged(known, assumed.as_ref())?.verdict().beside(by_pulses);
+        let session = self.session(columns.kind(), &whole);
+        let verdict = if session.is_some() { Verdict::default() } else { whole };
         intervals_s.sort_by(f64::total_cmp);
         let tool_on = self.tool_on(in_file, stretches, [first.t_s, last.t_s])?;
         let from_first = |[from_s, to_s]: [f64; 2]| [from_s - first.t_s, to_s - first.t_s];
@@ -196,6 +204,7 @@ impl Task<'_> {
             tool_on_s: tool_on.map(|stretches| stretches.into_iter().map(from_first).collect()),
             verdict,
             repeats,
+            session,
             pulses,
             first_s: first.t_s,
             dates: (first.written == Written::Dated).then(|| [first.t_s, last.t_s].map(clock::written)),
@@ -208,6 +217,7 @@ impl Task<'_> {
             survey.contradicted = Some(agreement).filter(|_| is_contradicted);
             survey.has_motion = !is_contradicted;
         }
+        self.judge_calibrated(&mut survey)?;
         Ok(survey)
     }
 
@@ -402,8 +412,7 @@ impl Task<'_> {
         if survey.kind == Kind::Differences || survey.calibration.is_some() {
             config.locating.calibrate_sound_speed = false;
         }
-        // Readings are calibrated as a whole, and the doubts about them are known beforehand.
-        config.locating.session = None;
+        config.locating.session = survey.session;
         if let Some(found) = &survey.calibration {
             config.locating.scale_sigma_ratio = found.scale().1;
         }
@@ -484,7 +493,7 @@ impl Track {
             odometry: odometry.unwrap_or_default(),
             ..world::Readings::default()
         };
-        let located = self.locator.take(&readings);
+        let located = self.locator.take(&readings, self.t_s);
         if readings.ranging_cycle {
             let heard: Vec<StationId> = readings.ranges.iter().map(|set| set.station).collect();
             self.doubts.take(self.t_s, self.locator.sides(), &heard, self.locator.impossible());

@@ -7,6 +7,7 @@ use std::{collections::BTreeMap, fmt::Write as _, path::PathBuf};
 use tempfile::TempDir;
 use world::{Odometry, Point, Pose, RangeSet, Readings};
 
+mod calibrated;
 mod pulses;
 
 const SCENARIO: &str = r#"

@@ -23,6 +23,9 @@ const SIGNIFICANT: f64 = 5.0;
 const HARMLESS: f64 = 0.2;
 /// Number of standard deviations below which an offset is attributed to chance: most sessions have no offset.
 const BEYOND_CHANCE: f64 = 2.0;
+/// The least lead of one error over the others, in the sum of squared residuals in units of their variances, from which it is
+/// certainly the cause: odds of exp(lead / 2).
+const LEAST_LEAD: f64 = 16.0;
 /// The least information that shows an error, as a share of the information that known positions would give.
 const LEAST_SEEN: f64 = 1e-6;
 
@@ -90,7 +93,7 @@ impl CommonError {
 }
 
 /// The findings about a session.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Verdict {
     /// The number of fixes evaluated.
     pub fixes: u64,
@@ -132,6 +135,22 @@ impl Verdict {
         self.scale.iter_mut().for_each(|scale| allow(scale, share));
         self.stations.iter_mut().for_each(|(_, wrong)| allow(wrong, length_m));
         self
+    }
+
+    /// Whether a length common to all ranges is the only proven error, and explains the residuals clearly better than any
+    /// other.
+    pub fn is_length_alone(&self) -> bool {
+        let Some(length) = self.offset_m.filter(|length| length.is_proven) else { return false };
+        let explained = |wrong: &Wrong| (wrong.value / wrong.sigma).powi(2);
+        let mut others = self.scale.iter().chain(self.stations.iter().map(|(_, wrong)| wrong));
+        others.all(|wrong| !wrong.is_proven && explained(wrong) + LEAST_LEAD <= explained(&length))
+    }
+
+    /// Returns the findings about fixes that a session calibration has corrected: the length that all ranges have in
+    /// common. The calibration itself finds the other errors, each from its beginning on.
+    #[must_use]
+    pub fn beside_calibration(self) -> Self {
+        Self { scale: None, stations: Vec::new(), ..self }
     }
 
     /// Returns the unproven but likely errors of all ranges, as standard deviations.

@@ -2,9 +2,13 @@
 
 use super::{figures, name_of};
 use crate::cli::LocateArgs;
-use ::locate::{Doubts, Pulsed, Survey, Tally};
-use mission::event::{change_text, pulse_text};
-use positioning::{Agreement, Wrong};
+use ::locate::{Doubts, Kind, Pulsed, Survey, Tally};
+use account::Ranging;
+use mission::{
+    clock,
+    event::{change_text, pulse_text},
+};
+use positioning::{Agreement, SessionConfig, Wrong};
 use report::forecast::line_of_stations;
 use scenario::Scenario;
 use std::fmt::Write as _;
@@ -39,14 +43,15 @@ pub(super) fn human(
     args: &LocateArgs,
     scenario: &Scenario,
     survey: &Survey,
-    (tally, doubts): (&Tally, &Doubts),
+    (tally, doubts, ranging): (&Tally, &Doubts, &Ranging),
     shown: &str,
 ) -> String {
     let mut text = Lines::default();
     of_file(&mut text, survey, shown);
     text.line("tool", tool(survey));
     text.lines("pulses", pulses(scenario, survey));
-    of_sound(&mut text, args, scenario, survey, (tally, doubts));
+    of_sound(&mut text, args, scenario, survey, (tally, doubts, ranging));
+    text.lines("calibration", calibration(scenario, survey, ranging));
     text.lines("residuals", residuals(args, scenario, survey));
     text.lines("repetitions", repetitions(scenario, survey));
     text.lines("left out", impossible(scenario, doubts));
@@ -107,6 +112,28 @@ fn pulses(scenario: &Scenario, survey: &Survey) -> Vec<String> {
     lines
 }
 
+/// The speed of sound and the wrong stations that the session calibration has found.
+fn calibration(scenario: &Scenario, survey: &Survey, ranging: &Ranging) -> Vec<String> {
+    if scenario.mission.locating.session.is_some() && survey.session.is_none() {
+        let least = SessionConfig::least_stations(survey.kind == Kind::Differences);
+        let why = if survey.verdict.is_length_alone() {
+            "it does not estimate a length common to all ranges (see residuals)".into()
+        } else {
+            format!("{} need at least {least} stations for it", survey.kind.word())
+        };
+        return vec![format!("ae.session_calibration not used: {why}")];
+    }
+    let mut lines = ranging.calibration().map(|found| found.sentences()).unwrap_or_default();
+    if let Some(since_s) = ranging.not_separable_since_s() {
+        lines.push(format!(
+            "since T+{}, a wrong station and a wrong speed of sound cannot be told apart: the robot must pass both close \
+             to stations and far from them",
+            clock(since_s)
+        ));
+    }
+    lines
+}
+
 fn of_file(text: &mut Lines, survey: &Survey, shown: &str) {
     text.line("readings", format!("{shown}, {} rows of {}", survey.rows, survey.kind.word()));
     if let Some([first, last]) = &survey.dates {
@@ -140,7 +167,7 @@ fn of_sound(
     args: &LocateArgs,
     scenario: &Scenario,
     survey: &Survey,
-    told: (&Tally, &Doubts),
+    told: (&Tally, &Doubts, &Ranging),
 ) {
     let found = figures(args, scenario, survey, told);
     if let Some([scale, sigma]) = found.range_scale {
@@ -167,12 +194,6 @@ fn of_sound(
             format!(
                 "not reliable: wrong ranges ({wrong}) have spoilt the estimate; correct or remove them first"
             ),
-        );
-    }
-    if scenario.mission.locating.session.is_some() {
-        text.line(
-            "calibration",
-            "ae.session_calibration applies to missions; a file is tested as a whole (see residuals)",
         );
     }
     if found.range_scale.is_some_and(|[_, sigma]| sigma > DOUBTFUL_SCALE) {
