@@ -23,6 +23,23 @@ fn a_script_flies_a_mission_and_demands_its_result() {
 }
 
 #[test]
+fn a_scenario_that_is_opened_by_its_name_is_the_selected_one_on_the_home_screen() {
+    let bench = Bench::new();
+    let folder = bench.path().join("scenarios");
+    std::fs::create_dir(&folder).unwrap();
+    for (name, from) in [("first", "cover-circle.toml"), ("tank", "cover-square.toml")] {
+        std::fs::copy(scenario(from), folder.join(format!("{name}.toml"))).unwrap();
+    }
+    let file = bench.file(
+        "mission.txt",
+        "wait until screen plan within 1m\nkey 1\nwait until text \"cover-circle\" within 1m\nassert text \">cover-square\"\nassert text \"open, \"\n\
+         assert not text \"INVALID\"\nassert not text \"not a regular file\"\n",
+    );
+    let ended = bench.tankops(&["console", "tank", "--script", file.to_str().unwrap()]);
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+}
+
+#[test]
 fn the_first_line_that_fails_is_named() {
     let cases = [
         (

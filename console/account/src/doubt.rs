@@ -1,10 +1,10 @@
 //! Floor whose guarantee was taken back, because a station was found wrong.
 
-use crate::Fold;
+use crate::{Fold, scanned::Scanned};
 use mission::{Event, EventKind, clock, event::bias_text};
 use positioning::Estimated;
 use serde::{Deserialize, Serialize};
-use world::Point;
+use world::{CellRun, Point};
 
 /// Floor that lost its guarantee when a biased station was detected.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -59,6 +59,9 @@ pub struct InDoubt {
     pub floor: TakenBack,
     /// The place in this floor that is closest to its middle, metres, tank frame; `None` if the floor is empty.
     pub at: Option<Point>,
+    /// The cells of this floor; once the run has ended, those that no later pass guarantees.
+    #[serde(default)]
+    pub cells: Vec<CellRun>,
 }
 
 /// Follows the events of a run, and states which floor is in doubt while the run goes on. The figures are those of the
@@ -81,32 +84,51 @@ impl DoubtWatch {
     }
 
     /// Adds an event; events must come in the order of the journal. Returns the list of the floor in doubt, oldest first, if
-    /// the event adds to it.
+    /// the event adds to it, or ends a run that has such floor: then each entry states what stayed in doubt.
     pub fn apply(&mut self, event: &Event) -> Option<&[InDoubt]> {
-        if !matches!(event.kind, EventKind::StationBiased { .. }) {
-            self.fold.apply(event);
-            return None;
-        }
-        let before = self.cells();
         self.fold.apply(event);
-        let added: Vec<Point> = self
-            .cells()
-            .into_iter()
-            .zip(before)
-            .filter_map(|(cell, before)| cell.filter(|_| before.is_none()))
-            .collect();
-        let floor = self.fold.taken_back().last()?.clone();
-        self.listed.push(InDoubt { floor, at: middle(&added) });
+        match event.kind {
+            EventKind::StationBiased { .. } => {
+                let floor = self.fold.taken_back().last()?.clone();
+                let cells = self.cells(self.fold.taken_back().len());
+                self.listed.push(InDoubt { floor, at: self.middle(&cells), cells: runs(&cells) });
+            }
+            EventKind::Ended { .. } if !self.listed.is_empty() => {
+                for (index, floor) in self.fold.still_in_doubt().into_iter().enumerate() {
+                    let cells = runs(&self.cells(index + 1));
+                    let Some(listed) = self.listed.get_mut(index) else { continue };
+                    (listed.floor, listed.cells) = (floor, cells);
+                }
+            }
+            _ => return None,
+        }
         Some(&self.listed)
     }
 
-    /// The centre of each cell that is in doubt; `None` for the other cells.
-    fn cells(&self) -> Vec<Option<Point>> {
-        let Some(scanned) = self.fold.scanned() else { return Vec::new() };
-        let floor = scanned.believed().floor();
-        let cell = |index| scanned.passes().is_in_doubt(index).then(|| floor.center(index));
-        (0..floor.len()).map(cell).collect()
+    /// The cells that are in doubt since guarantees were taken back for the `time`-th time, counted from 1.
+    fn cells(&self, time: usize) -> Vec<usize> {
+        let passes = self.fold.scanned().map(Scanned::passes);
+        passes.map_or_else(Vec::new, |passes| passes.left_in_doubt(time).collect())
     }
+
+    /// The centre of the cell that is closest to the mean of all centres.
+    fn middle(&self, cells: &[usize]) -> Option<Point> {
+        let floor = self.fold.scanned()?.believed().floor();
+        let points: Vec<Point> = cells.iter().map(|cell| floor.center(*cell)).collect();
+        middle(&points)
+    }
+}
+
+/// Cells in ascending order as runs.
+fn runs(cells: &[usize]) -> Vec<CellRun> {
+    let mut runs: Vec<CellRun> = Vec::new();
+    for cell in cells.iter().map(|cell| *cell as u32) {
+        match runs.last_mut() {
+            Some(CellRun(first, count)) if *first + *count == cell => *count += 1,
+            _ => runs.push(CellRun(cell, 1)),
+        }
+    }
+    runs
 }
 
 /// The point that is closest to the mean of all points.

@@ -344,7 +344,7 @@ impl Fold {
     }
 
     /// The floor whose guarantee was taken back, with the part that no later pass guarantees.
-    fn still_in_doubt(&self) -> Vec<TakenBack> {
+    pub(crate) fn still_in_doubt(&self) -> Vec<TakenBack> {
         let left_m2 = |time| self.scanned.as_ref().map(|scanned| scanned.left_in_doubt_m2(time));
         let times = self.known.taken_back.iter().zip(1..);
         times.map(|(floor, time)| TakenBack { left_m2: left_m2(time), ..floor.clone() }).collect()

@@ -132,11 +132,11 @@ impl Passes {
         count
     }
 
-    /// Of the cells that lost their guarantee the `time`-th time, counted from 1, the number that is still in doubt.
-    pub(crate) fn left_in_doubt(&self, time: usize) -> usize {
+    /// Of the cells that lost their guarantee the `time`-th time, counted from 1, those that are still in doubt, in
+    /// ascending order.
+    pub(crate) fn left_in_doubt(&self, time: usize) -> impl Iterator<Item = usize> {
         (0..self.taken_back.len())
-            .filter(|cell| usize::from(self.taken_back[*cell]) == time && self.is_in_doubt(*cell))
-            .count()
+            .filter(move |cell| usize::from(self.taken_back[*cell]) == time && self.is_in_doubt(*cell))
     }
 
     /// The number of cells that lost their guarantee, and the number of them that a later pass guarantees.

@@ -108,7 +108,7 @@ impl Scanned {
     /// Of the floor that lost its guarantee the `time`-th time, counted from 1, the area that is still in doubt, square
     /// metres.
     pub(crate) fn left_in_doubt_m2(&self, time: usize) -> f64 {
-        self.passes.left_in_doubt(time) as f64 * self.believed.floor().cell_m2()
+        self.passes.left_in_doubt(time).count() as f64 * self.believed.floor().cell_m2()
     }
 
     /// The half-width of the 95 % ellipse of a covariance, square metres, that matters to the tool at a pose, metres.

@@ -21,16 +21,27 @@ pub fn demo(settings: &Settings) -> anyhow::Result<Scenario> {
 /// # Errors
 /// Every objection, with its place in the file.
 pub fn read(path: &Path, settings: &Settings) -> anyhow::Result<Scenario> {
-    let listed = listed(path).filter(|_| !path.exists() && !is_stdin(path));
-    match &listed {
-        Some(file) if file.exists() => read_file(file, settings),
-        Some(_) if path == Path::new("demo") => demo(settings),
+    match file_of(path)? {
+        Some(file) => read_file(&file, settings),
+        None => demo(settings),
+    }
+}
+
+/// The file that a path, standard input (`-`) or a name listed on the home screen stands for; `None` for the built-in
+/// demo.
+///
+/// # Errors
+/// Neither the path nor a file with this name exists.
+pub fn file_of(path: &Path) -> anyhow::Result<Option<PathBuf>> {
+    match listed(path).filter(|_| !path.exists() && !is_stdin(path)) {
+        Some(file) if file.exists() => Ok(Some(file)),
+        Some(_) if path == Path::new("demo") => Ok(None),
         Some(file) => Err(bad_input(format!(
             "{}: there is no such file, and no {} either; give the path of a scenario, or a name from the home screen",
             path.display(),
             file.display()
         ))),
-        None => read_file(path, settings),
+        None => Ok(Some(path.to_owned())),
     }
 }
 
@@ -57,6 +68,8 @@ mod tests {
             assert_eq!(listed(Path::new(path)), None, "{path}");
         }
         assert_eq!(read(Path::new("demo"), &Settings::default()).unwrap().name, "demo");
+        assert_eq!(file_of(Path::new("demo")).unwrap(), None);
+        assert_eq!(file_of(Path::new("Cargo.toml")).unwrap(), Some("Cargo.toml".into()));
         let error = read(Path::new("no-such-tank"), &Settings::default()).unwrap_err().to_string();
         assert!(error.contains("no scenarios/no-such-tank.toml either"), "{error}");
     }

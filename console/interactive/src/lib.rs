@@ -239,13 +239,18 @@ impl Opening {
             return Ok(Self::View(runs::find(run, logs)?));
         }
         let (source, scenario) = match scenario {
-            Some(path) => (listed(path, folders), scenarios::read(path, settings)?),
+            Some(path) => (source(path, folders)?, scenarios::read(path, settings)?),
             None => (Source::Demo, scenarios::demo(settings)?),
         };
         check_logs(logs)?;
         let flight = Flight::for_operator(&scenario);
         Ok(Self::Mission(source, Box::new((scenario, flight))))
     }
+}
+
+/// The source of a scenario that was opened by its path or by its name.
+fn source(path: &Path, folders: &[PathBuf]) -> anyhow::Result<Source> {
+    Ok(scenarios::file_of(path)?.map_or(Source::Demo, |file| listed(&file, folders)))
 }
 
 /// A scenario file under the name that the home screen lists: in one of its folders, however the path was typed.

@@ -41,7 +41,7 @@ impl Disk {
 
     /// Lists a scenario file from now on, even if it is in none of the folders.
     pub(super) fn list(&self, source: &Source) {
-        // A scenario may also be opened by its name, which is not a path.
+        // Standard input (`-`) is not a file that can be read again.
         if let Source::File(path) = source
             && let Ok(whole) = std::fs::canonicalize(path)
         {

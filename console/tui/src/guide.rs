@@ -128,7 +128,7 @@ pub fn guide(cause: &Cause) -> Guide {
             },
         },
         Cause::Planner => Guide {
-            cause: "The planner panicked, crashed, hung, or sent an invalid answer; its process has ended.",
+            cause: "The planner crashed, hung, or sent an invalid answer; its process has ended.",
             holds: "The robot is held at once.",
             effect: "If the scenario names a fallback planner, it takes over automatically.",
             remedies: const { &[RESUME, PLAN_AGAIN, OTHER_PLANNER, PARAMETERS, END] },

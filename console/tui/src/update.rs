@@ -154,6 +154,9 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
     {
         return if held_keys::is_pressed(model, press) { preflight::tick(model) } else { Vec::new() };
     }
+    if press.key == Key::Char(' ') && typing::holds_by_space(model) {
+        return if model.live.hold_asked { Vec::new() } else { hold_now(model) };
+    }
     // In an input line, letters and the space are typed; there Ctrl-C holds.
     if typing::press(model, press.key) {
         return Vec::new();

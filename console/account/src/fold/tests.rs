@@ -3,10 +3,11 @@
 #![allow(clippy::unwrap_used, clippy::float_cmp, reason = "tests with exact figures")]
 
 use super::*;
-use crate::DoubtWatch;
 use crate::samples::{chosen, estimated, event, fold, full_run, opened, truth, zone_drawn};
+use crate::{DoubtWatch, InDoubt};
 use mission::{During, Fault};
 use serde_json::{Value, json};
+use world::CellRun;
 
 #[test]
 fn nothing_is_known_of_no_events() {
@@ -182,6 +183,22 @@ fn the_floor_in_doubt_is_listed_as_in_the_report_with_its_place() {
     // Only the second half of the way is in doubt.
     let at = listed[0].at.unwrap();
     assert!(at.x > 0.5 && at.x < 1.6 && at.y.abs() < 0.3, "{at}");
+    let cells = |doubt: &InDoubt| doubt.cells.iter().map(|CellRun(_, count)| *count).sum::<u32>();
+    let scanned = reported.scanned().unwrap();
+    let area_m2 = |doubt: &InDoubt| f64::from(cells(doubt)) * scanned.believed().floor().cell_m2();
+    assert!((area_m2(&listed[0]) - floors[0].area_m2).abs() < 1e-9, "{listed:?}");
+    // What a later pass guarantees is taken off the list when the run has ended.
+    let ended = event(6, &json!({ "event": "ended", "outcome": "complete", "reason": "done" }));
+    let left = watch.apply(&ended).unwrap().to_vec();
+    assert_eq!((cells(&left[0]), left[0].floor.left_m2), (cells(&listed[0]), Some(floors[0].area_m2)));
+    let mut watch = DoubtWatch::opening(&opened).unwrap();
+    let back = event(5, &estimated(0.25, 0.0, 0.01));
+    let there = there.iter().map(|(tick, kind)| event(*tick, kind));
+    let lists: Vec<usize> = there
+        .chain([biased, back, ended])
+        .filter_map(|event| watch.apply(&event).map(|list| list[0].cells.len()))
+        .collect();
+    assert!(lists.len() == 2 && lists[0] > 0 && lists[1] == 0, "{lists:?}");
 }
 
 #[test]

@@ -100,6 +100,11 @@ impl HoldReason {
         all
     }
 
+    /// Whether an order of the operator is the cause.
+    pub fn is_ordered(&self) -> bool {
+        matches!(self, Self::Operator | Self::Stepped | Self::PlannerReplaced)
+    }
+
     /// Whether the planner is the cause, so that a different planner may help.
     pub fn blames_planner(&self) -> bool {
         matches!(self, Self::PlannerFault { .. } | Self::PlannerSilent { .. } | Self::PlanRefused { .. })

@@ -5,7 +5,7 @@ use super::remedy::{Guide, HOLD, SHOW, check};
 pub(super) const UNKNOWN: Guide = Guide {
     cause: "Unknown obstacle: the robot detects something that is not on the drawing.",
     holds: "",
-    effect: "Planners avoid it. The floor under it is not counted; floor that it blocks becomes \
+    effect: "Planners avoid it. In a scan, the floor under it is not counted, and floor that it blocks becomes \
     unreachable.",
     remedies: const { &[SHOW, check("Check what it is: nozzle, sump, debris."), HOLD] },
 };

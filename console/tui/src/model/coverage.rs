@@ -5,7 +5,7 @@ mod class;
 use account::{Overlap, Shares};
 use class::Tally;
 use serde::{Deserialize, Serialize};
-use world::{CellRun, CoverageGrid, Floor, KindRun, Pose, Tiles, ToolPart, coverage::Counts};
+use world::{Cell, CellRun, CoverageGrid, Floor, KindRun, Pose, Tiles, ToolPart, coverage::Counts};
 
 /// The blocks of cells at one zoom level.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -128,6 +128,20 @@ impl Raster {
     /// The number of cells of each kind.
     pub fn counts(&self) -> Counts {
         self.grid.counts()
+    }
+
+    /// The number of reachable cells of each kind among those that are asked for.
+    ///
+    /// Cost: a look at every cell.
+    pub fn counts_of(&self, is_asked: impl Fn(usize) -> bool) -> Counts {
+        let mut counts = Counts::default();
+        for cell in (0..self.floor().len()).filter(|cell| is_asked(*cell)) {
+            let kind = self.floor().kind(cell);
+            if kind == Cell::Reachable {
+                counts.add(kind, self.is_scanned(cell));
+            }
+        }
+        counts
     }
 
     /// The scanned area, square metres.

@@ -1,10 +1,12 @@
 //! The open run, and the communication between the operator and its mission.
 
-use super::{Combination, Earlier, Health, Plans, Preflight, Raster, Replay, Run, Speed, Together, WhatIf};
+use super::{
+    Combination, Earlier, Health, Plans, Preflight, Raster, Replay, Run, Speed, Together, WhatIf, together,
+};
 use account::{Account, Area, Estimate, InDoubt, LeftOut, MissReason, Shares, Summary, TakenBack};
 use mission::{Order, Phase, WayBack, ZoneCost};
 use serde::{Deserialize, Serialize};
-use world::Point;
+use world::{CellRun, Point};
 
 /// The id of a run opened since the console was started; 0 means none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
@@ -221,10 +223,31 @@ impl Live {
         let until_now = |floor: &&TakenBack| floor.until_s <= self.run.clock.t_s;
         match &self.in_doubt[..] {
             [] => {
-                reported().filter(until_now).map(|floor| InDoubt { floor: floor.clone(), at: None }).collect()
+                let listed =
+                    |floor: &TakenBack| InDoubt { floor: floor.clone(), at: None, cells: Vec::new() };
+                reported().filter(until_now).map(listed).collect()
             }
             floor => floor.to_vec(),
         }
+    }
+
+    /// The area of the floor in doubt, square metres, and the stations that were wrong, by name; `None` if no floor is in
+    /// doubt. Floor that a later pass guarantees counts until the run has ended.
+    pub fn doubt(&self) -> Option<(f64, String)> {
+        let all = self.in_doubt();
+        let area_m2 = all.iter().map(|doubt| doubt.floor.left_m2.unwrap_or(doubt.floor.area_m2)).sum();
+        let mut stations: Vec<&str> = all.iter().map(|doubt| doubt.floor.station.as_str()).collect();
+        stations.dedup();
+        (area_m2 > 0.0).then(|| (area_m2, stations.join(" ")))
+    }
+
+    /// For each cell of a floor with `len` cells, whether it is in doubt. Empty if no floor is, and for a replay, whose
+    /// report states only the areas.
+    pub fn doubtful(&self, len: usize) -> Vec<bool> {
+        let runs: Vec<CellRun> = self.in_doubt.iter().flat_map(|doubt| doubt.cells.clone()).collect();
+        let mut marked = vec![false; if runs.is_empty() { 0 } else { len }];
+        together::mark(&runs, &mut marked);
+        marked
     }
 
     /// The part of the reachable floor that was requested of this run. `None` if all of it was requested, or if the
@@ -296,6 +319,16 @@ impl Live {
         self.floor().into_iter().flat_map(|floor| &floor.missed)
     }
 
+    /// Whether the scenario is still being read.
+    pub fn is_loading(&self) -> bool {
+        self.source.is_some() && self.run.about.is_none() && self.failure.is_none()
+    }
+
+    /// Whether the first plan was ordered and has not arrived.
+    pub fn awaits_plan(&self) -> bool {
+        self.plans.is_asked && self.run.planning.plan.is_none() && self.run.planning.fault.is_none()
+    }
+
     /// Whether the mission is waiting for its start.
     pub fn waits(&self) -> bool {
         self.run.about.is_some() && *self.run.phase() == Phase::Waiting && !self.is_look_only()
@@ -315,6 +348,9 @@ impl Live {
         }
         if *order == Order::Hold {
             self.hold_asked = false;
+        }
+        if *order == Order::Plan {
+            self.plans.is_asked = false;
         }
     }
 }

@@ -10,6 +10,9 @@ use world::Point;
 /// The plans before the start.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Plans {
+    /// Whether the first plan was ordered and the mission has not answered yet.
+    #[serde(default)]
+    pub is_asked: bool,
     /// The estimate for the mission's plan, and the ask that the plan answers.
     pub estimate: Option<(Option<AskId>, Estimate)>,
     /// The number of lanes of the plan that the estimate is for; 0 if it has no lanes.

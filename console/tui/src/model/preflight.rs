@@ -98,6 +98,11 @@ impl Model {
 
     /// The checks that need only the model.
     fn own_checks(&self) -> Vec<Check> {
+        // Nothing is known of a mission whose scenario has not been read.
+        if self.live.is_loading() {
+            let found = "loading; the plan follows".to_owned();
+            return vec![check("scenario", CheckOutcome::Failed, found), self.terminal_check()];
+        }
         let mut checks = if self.live.run.is_survey() {
             self.survey_checks()
         } else {
@@ -126,6 +131,9 @@ impl Model {
                     format!("{} {}, ABI {}, sha256 {hash}", info.id, info.version, info.abi),
                 )
             }
+            (None, None) if self.live.awaits_plan() || self.live.busy.is_some() => {
+                check("planner", CheckOutcome::Failed, "being started; the plan follows".into())
+            }
             (None, None) => check("planner", CheckOutcome::Failed, "no planner found".into()),
         }
     }
@@ -142,6 +150,9 @@ impl Model {
             (_, None) if standing.readiness == Readiness::Preparing => {
                 check("plan", CheckOutcome::Failed, "being made; start again when it is ready".into())
             }
+            (None, None) if self.live.awaits_plan() => {
+                check("plan", CheckOutcome::Failed, "follows; start when it is ready".into())
+            }
             (Some(plan), None) if self.live.is_plan_of_the_way() => {
                 let outcome = if plan.complete { CheckOutcome::Passed } else { CheckOutcome::Warning };
                 let what = if plan.complete { "the whole task" } else { "only part of the task" };
@@ -149,7 +160,7 @@ impl Model {
             }
             (Some(plan), None) if plan.complete => {
                 let left_out = self.live.left_out().filter(|left_out| !left_out.areas.is_empty());
-                let what = left_out.map_or_else(|| "the whole task".to_owned(), all_but);
+                let what = left_out.map_or_else(|| "the whole task".to_owned(), areas_left_out);
                 check("plan", CheckOutcome::Passed, format!("{:.1} m, {what}", plan.length_m))
             }
             (Some(plan), None) => {
@@ -270,12 +281,12 @@ impl Model {
     }
 }
 
-/// The task without the areas that a plan leaves out: `all but 1 area, 0.4 m²`.
-fn all_but(left_out: &LeftOut) -> String {
+/// The areas that a plan leaves out: `1 area left out, 0.40 m²`.
+fn areas_left_out(left_out: &LeftOut) -> String {
     let area_m2: f64 = left_out.areas.iter().map(|area| area.area_m2).sum();
     let areas =
         if left_out.areas.len() == 1 { "1 area".into() } else { format!("{} areas", left_out.areas.len()) };
-    format!("all but {areas}, {area_m2:.1} m²")
+    format!("{areas} left out, {area_m2:.2} m²")
 }
 
 /// Why a plan leaves floor out, as the end of a sentence: the reason for the largest area.

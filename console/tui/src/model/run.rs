@@ -5,6 +5,7 @@ use super::{
     Alarms, Cause, FloorLevel, History, Log, Planning, Position, Raster, Shadow, Tether, Trail, log::What,
     scanner::Scanner, survey::Survey,
 };
+use account::Shares;
 use mission::{
     EventKind, FoldedStanding, MissionConfig, Phase, PlannerInfo, TaskConfig, WayBack, event::TetherAlarm,
 };
@@ -244,6 +245,23 @@ impl Run {
         let TaskConfig::Cover { regions, .. } = &about.mission.task else { return Vec::new() };
         let requested = cells_within(coverage.floor(), regions).unwrap_or_default();
         requested.into_iter().map(|is_requested| !is_requested).collect()
+    }
+
+    /// Whether only a part of the floor was requested.
+    pub fn is_in_part(&self) -> bool {
+        let task = self.about.as_ref().map(|about| &about.mission.task);
+        matches!(task, Some(TaskConfig::Cover { regions, .. }) if !regions.is_empty())
+    }
+
+    /// The shares of the reachable floor that was requested. `None` if the whole floor was requested, and for a mission
+    /// that does not scan.
+    ///
+    /// Cost: a look at every cell.
+    pub fn requested(&self) -> Option<Shares> {
+        let own = self.coverage.as_ref()?;
+        let others = Some(self.not_requested()).filter(|others| !others.is_empty())?;
+        let counts = own.counts_of(|cell| others.get(cell) == Some(&false));
+        Some(Shares::of(counts, own.floor().cell_m2()))
     }
 
     /// Why a planner cannot run this mission; `None` if it can.

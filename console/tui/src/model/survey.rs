@@ -123,6 +123,35 @@ impl Run {
         self.survey.is_some()
     }
 
+    /// The numbers of the columns of a survey, in their order: that in the name of the found obstacle that a column stands
+    /// for, such as `found 2`. Other columns get the numbers after the largest one.
+    pub fn column_numbers(&self) -> Vec<usize> {
+        let columns = self.survey.as_ref().map_or(&[][..], |survey| survey.columns.as_slice());
+        let obstacles = self.about.as_ref().map_or(&[][..], |about| about.world.obstacles.as_slice());
+        let found: Vec<(usize, Point)> = obstacles
+            .iter()
+            .filter_map(|obstacle| {
+                let number = obstacle.name.strip_prefix("found ").filter(|_| !obstacle.known)?;
+                Some((number.parse().ok()?, obstacle.shape.center()))
+            })
+            .collect();
+        let mut next = found.iter().map(|(number, _)| *number).max().unwrap_or(0);
+        let mut taken = Vec::new();
+        columns
+            .iter()
+            .map(|column| {
+                let is_here = |at: &Point| column.shape().distance_m(*at) <= 0.0;
+                let mut numbers = found.iter().filter(|(_, at)| is_here(at)).map(|(number, _)| *number);
+                let number = numbers.find(|number| !taken.contains(number)).unwrap_or_else(|| {
+                    next += 1;
+                    next
+                });
+                taken.push(number);
+                number
+            })
+            .collect()
+    }
+
     /// Folds in what an event says about a survey.
     pub(super) fn surveyed(&mut self, event: &Event) {
         if let EventKind::RunOpened(run) = &event.kind {

@@ -64,11 +64,7 @@ impl Together {
     pub fn not_requested(&self) -> Vec<bool> {
         let cells = self.raster.as_ref().filter(|_| !self.not_requested.is_empty());
         let mut marked = vec![false; cells.map_or(0, |raster| raster.floor().len())];
-        for CellRun(first, count) in &self.not_requested {
-            let end = (*first as usize).saturating_add(*count as usize).min(marked.len());
-            let first = (*first as usize).min(end);
-            marked[first..end].fill(true);
-        }
+        mark(&self.not_requested, &mut marked);
         marked
     }
 
@@ -78,6 +74,15 @@ impl Together {
             1 => "the run before it".to_owned(),
             n => format!("the {n} runs before it"),
         }
+    }
+}
+
+/// Marks the cells in runs of cells; cells beyond the end are ignored.
+pub(crate) fn mark(runs: &[CellRun], marked: &mut [bool]) {
+    for CellRun(first, count) in runs {
+        let end = (*first as usize).saturating_add(*count as usize).min(marked.len());
+        let first = (*first as usize).min(end);
+        marked[first..end].fill(true);
     }
 }
 
@@ -109,12 +114,9 @@ impl Earlier {
     /// Cost: a look at every cell.
     pub fn shares(&self, own: &Raster) -> [Shares; 2] {
         let is_asked = |cell: usize| self.asked.as_ref().is_none_or(|asked| asked.get(cell) == Some(&true));
-        let (mut requested, mut all) = (Counts::default(), Counts::default());
+        let (requested, mut all) = (own.counts_of(is_asked), Counts::default());
         for cell in 0..own.floor().len() {
             let (kind, is_scanned) = (own.floor().kind(cell), own.is_scanned(cell));
-            if kind == Cell::Reachable && is_asked(cell) {
-                requested.add(kind, is_scanned);
-            }
             let kind = match self.raster.floor().kind(cell) {
                 Cell::Reachable => kind,
                 closed => closed,

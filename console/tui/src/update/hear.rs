@@ -1,5 +1,6 @@
 //! Handles messages about the open run.
 
+use super::send::slow_if_held;
 use super::{Effect, RunMsg, finish, go, health, news, preflight, raise, replay, what_if, zones};
 use crate::model::{
     Busy, Cause, Change, Continued, Health, Live, Model, Overlay, Recording, RunId, RunResult, Screen,
@@ -38,13 +39,16 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
             if events.iter().any(goes_on) {
                 return what_if::forget(model);
             }
+            if let Some(slower) = slow_if_held(model, &events) {
+                return vec![slower];
+            }
             let has_opened = events.iter().any(|event| matches!(event.kind, EventKind::RunOpened(_)));
             // The operator must see the plan before anything moves; a survey has none.
-            return if has_opened && model.live.waits() && !model.live.run.is_survey() {
-                vec![Effect::Order(Order::Plan)]
-            } else {
-                Vec::new()
-            };
+            if !has_opened || !model.live.waits() || model.live.run.is_survey() {
+                return Vec::new();
+            }
+            model.live.plans.is_asked = true;
+            return vec![Effect::Order(Order::Plan)];
         }
         RunMsg::Checked(found) => return preflight::checked(model, found),
         RunMsg::Estimated(ask, estimate) => {

@@ -8,7 +8,7 @@ use super::{place, replay};
 use crate::actions::{ActionId, find};
 use crate::model::home::HomeList;
 use crate::model::ui::{Arrangement, Ask};
-use crate::model::{Model, Overlay, Pane, Screen};
+use crate::model::{Model, Overlay, Pane, PastRun, Screen};
 use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
 
 /// Checks that an action is possible now.
@@ -76,6 +76,17 @@ pub(crate) fn run(model: &Model) -> Result<(), String> {
     demand(named_run(model).is_some(), "no run is selected")
 }
 
+/// Checks that a run is selected, and that no console is still writing it.
+pub(crate) fn written_run(model: &Model) -> Result<(), String> {
+    run(model)?;
+    let name = named_run(model);
+    let listed = model.home.found.iter().flat_map(|found| &found.runs);
+    let is_running = |run: &PastRun| Some(&run.name) == name.as_ref() && run.end == "RUNNING";
+    // The list may not have been read again since the end of the run whose result is shown.
+    let is_result = model.ui.screen == Screen::Result;
+    demand(is_result || !listed.into_iter().any(is_running), "the run has not ended")
+}
+
 /// Checks that the run's own planner, which the re-scan uses, can scan.
 pub(crate) fn rescan(model: &Model) -> Result<(), String> {
     let is_result = model.ui.screen == Screen::Result;
@@ -85,7 +96,7 @@ pub(crate) fn rescan(model: &Model) -> Result<(), String> {
             let other = "`tankops rescan RUN` writes a scenario for another planner";
             Err(format!("planner {} {why}; {other}", planner.id))
         }
-        None => run(model),
+        None => written_run(model),
     }
 }
 
@@ -131,12 +142,14 @@ pub(crate) fn hold(model: &Model) -> Result<(), String> {
 /// Checks that the mission can start.
 pub(crate) fn start(model: &Model) -> Result<(), String> {
     demand(model.live.failure.is_none(), "the scenario could not be opened")?;
+    demand(!model.live.is_loading(), "the scenario is loading; start when the plan is ready")?;
     demand(model.live.run.about.is_some(), "no mission loaded yet")?;
     demand(!model.live.preflight.is_starting, "start checks already running; <cancel-plan>: cancel")?;
     demand(model.live.asked.is_none(), "start already requested; <hold>: HOLD")?;
     if let Some(busy) = model.live.busy.as_ref().filter(|_| model.live.waits()) {
         return Err(format!("{}: not started; start again when the plan is ready", busy.how_far()));
     }
+    demand(!model.live.awaits_plan(), "the plan follows; start when it is ready")?;
     let plan = model.live.run.standing.ready_plan();
     accepted(model, &Ask::Start(plan).order())?;
     match model.start_is_blocked_here() {

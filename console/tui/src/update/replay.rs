@@ -16,7 +16,11 @@ pub(crate) fn can_open(model: &Model) -> Result<(), String> {
 }
 
 fn replay(model: &Model) -> Result<&Replay, String> {
-    model.live.replay.as_deref().ok_or_else(|| "no run is being replayed; <review>: choose one".into())
+    let why = match model.ui.screen {
+        Screen::Review => "no run is being replayed; <replay>: play one first",
+        _ => "no run is being replayed; <review>: choose one",
+    };
+    model.live.replay.as_deref().ok_or_else(|| why.into())
 }
 
 /// Checks that enough of a replay is loaded to show it.

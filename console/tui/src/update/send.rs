@@ -3,7 +3,7 @@
 use super::message::Effect;
 use super::preflight;
 use crate::model::{Model, Speed, parameter};
-use mission::{Order, ParamValue, Severity};
+use mission::{Event, EventKind, Order, ParamValue, Severity};
 
 /// Sends an order; if it makes the robot move, records that an answer is due.
 pub(crate) fn send(model: &mut Model, order: Order) -> Vec<Effect> {
@@ -45,7 +45,22 @@ pub(crate) fn hold_now(model: &mut Model) -> Vec<Effect> {
         return Vec::new();
     }
     model.live.hold_asked = true;
-    let slower = (model.live.speed.is_fast()).then(Speed::default);
+    std::iter::once(Effect::Order(Order::Hold)).chain(slow_down(model)).collect()
+}
+
+/// Limits the simulation to real time after a hold that the mission itself has begun and that only an order can end: its
+/// operator has to read and decide, as after HOLD.
+pub(crate) fn slow_if_held(model: &mut Model, events: &[Event]) -> Option<Effect> {
+    let is_hold = |event: &Event| match &event.kind {
+        EventKind::Held { by, resumes } => resumes.is_never() && !by.is_ordered(),
+        _ => false,
+    };
+    if model.live.is_look_only() || !events.iter().any(is_hold) { None } else { slow_down(model) }
+}
+
+/// Limits the simulation to real time; the effect if it was faster.
+fn slow_down(model: &mut Model) -> Option<Effect> {
+    let slower = model.live.speed.is_fast().then(Speed::default);
     (model.live.speed, model.live.slowed_from) = (slower.unwrap_or(model.live.speed), None);
-    std::iter::once(Effect::Order(Order::Hold)).chain(slower.map(Effect::Speed)).collect()
+    slower.map(Effect::Speed)
 }

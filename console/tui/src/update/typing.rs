@@ -2,6 +2,7 @@
 
 use super::offer::demand;
 use super::palette;
+use crate::actions::{ActionId, find};
 use crate::keys::Key;
 use crate::model::{LineEdit, Model, Overlay, Pane, Screen};
 use mission::{ParamKind, Severity};
@@ -11,6 +12,25 @@ pub fn is_typing(model: &Model) -> bool {
     use Overlay::{Bookmark, Commands, Filter, Parameters, Shelve};
     let overlay = &model.ui.overlay;
     matches!(overlay, Commands(_) | Parameters { edit: Some(_), .. } | Filter(_) | Shelve(_) | Bookmark(_))
+}
+
+/// Whether the open input line has no text yet, so that a space would be its first character.
+fn is_blank(model: &Model) -> bool {
+    let text = match &model.ui.overlay {
+        Overlay::Commands(palette) => palette.line.text(),
+        Overlay::Parameters { edit: Some(edit), .. } => edit.line.text(),
+        Overlay::Filter(line) | Overlay::Bookmark(line) => line.text(),
+        Overlay::Shelve(shelving) => shelving.line.text(),
+        _ => return false,
+    };
+    text.is_empty()
+}
+
+/// Whether the space key holds although an input line is open: the robot may move, and no text has been typed. No line
+/// begins with a space.
+pub(crate) fn holds_by_space(model: &Model) -> bool {
+    let is_hold = |action| model.console.keys.of(action).contains(&Key::Char(' '));
+    model.live.may_move() && is_blank(model) && find::row(ActionId::Hold).is_some_and(is_hold)
 }
 
 /// Passes a key to the open input line; returns whether there is one and it uses the key.

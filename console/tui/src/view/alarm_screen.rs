@@ -143,7 +143,8 @@ fn paged(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
     table::draw(look, frame, list, Arrangement::Paged);
     let columns = usize::from(below.width) - 2;
     let mut lines = detail::cause(look, alarm, columns, PAGED_CAUSE);
-    lines.extend(actions::briefly(look, alarm, columns));
+    let rows = usize::from(below.height).saturating_sub(2 + lines.len());
+    lines.extend(actions::briefly(look, alarm, (columns, rows)));
     let title = detail::title(look, alarm);
     // The frame takes eight columns beside the title and the keys.
     let room = usize::from(below.width).saturating_sub(text::width(&title) + 8);

@@ -3,7 +3,7 @@
 
 use super::map::{PlateDrawing, PlateKey, ShadeKey, Shades, Window};
 use crate::actions::ActionId;
-use crate::model::{Earlier, Raster, replay::Shares};
+use crate::model::{Earlier, Raster, Run, RunId, replay::Shares};
 use crate::update::{Rows, Target};
 use ratatui::layout::{Position, Rect};
 use std::rc::Rc;
@@ -19,6 +19,7 @@ pub struct Cache {
     plates: Option<(PlateKey, Rc<PlateDrawing>)>,
     shares: Option<((u64, u64), Shares)>,
     rescan: Option<((u64, u64), [account::Shares; 2])>,
+    requested: Option<((RunId, u64), Option<account::Shares>)>,
     places: Places,
     /// Whether a title of this frame names the screen.
     is_titled: bool,
@@ -100,6 +101,12 @@ impl Cache {
     /// The shares of a re-scan, whose own floor is given.
     pub(super) fn rescan(&mut self, before: &Earlier, own: &Raster) -> [account::Shares; 2] {
         kept(&mut self.rescan, (before.raster.stamp(), own.stamp()), || before.shares(own))
+    }
+
+    /// The shares of the floor that was requested of the open run.
+    pub(super) fn requested(&mut self, id: RunId, run: &Run) -> Option<account::Shares> {
+        let stamp = run.coverage.as_ref()?.stamp();
+        kept(&mut self.requested, (id, stamp), || run.requested())
     }
 
     /// The plate of each cell of a floor.

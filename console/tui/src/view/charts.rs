@@ -18,6 +18,8 @@ use world::Point;
 const LABELS: u16 = 6;
 /// The smallest plot that has a time axis, columns and rows.
 const AXIS: (u16, u16) = (26, 4);
+/// The dots of a curve in the height of a character.
+const DOTS: u16 = 4;
 /// The width of a mission time, and of an axis with three of them, columns.
 const CLOCK: u16 = 10;
 const MIDDLE: u16 = 3 * CLOCK + 4;
@@ -184,8 +186,10 @@ pub(super) fn curve(look: &Look, frame: &mut Frame, area: Rect, curve: &Curve) {
 /// Writes a value with its decimals beside the curve, at its height.
 fn label(look: &Look, frame: &mut Frame, area: Rect, (value, decimals): (f64, usize), top: f64) {
     let share = (value / top).clamp(0.0, 1.0);
-    let up = (share * f64::from(area.height - 1)).round() as u16;
-    let place = Rect { y: area.bottom() - 1 - up, height: 1, width: LABELS - 1, ..area };
+    // The row of the curve's dot, which need not be the nearest row.
+    let dots = if look.caps.glyphs.has_dots() { DOTS } else { 1 };
+    let down = ((1.0 - share) * f64::from(dots * area.height - 1)).round() as u16 / dots;
+    let place = Rect { y: area.y + down, height: 1, width: LABELS - 1, ..area };
     let value = text::number(value, decimals);
     frame.render_widget(Line::from(look.span(Role::Dim, value)).right_aligned(), place);
 }

@@ -120,17 +120,15 @@ fn narrow_lines(look: &Look, bases: &Bases) -> Vec<(u8, Line<'static>)> {
 
 /// The floor in doubt, in a longer and a shorter wording; `None` if no floor is.
 fn in_doubt(model: &Model) -> Option<[String; 2]> {
-    let all = model.live.in_doubt();
-    let first = all.first()?;
-    let area_m2: f64 = all.iter().map(|doubt| doubt.floor.area_m2).sum();
-    let mut stations: Vec<&str> = all.iter().map(|doubt| doubt.floor.station.as_str()).collect();
-    stations.dedup();
-    let short = format!("{} m², {}", text::number(area_m2, 1), stations.join(" "));
-    Some([format!("{short}, since T+{}", text::clock(first.floor.since_s)), short])
+    let (area_m2, stations) = model.live.doubt()?;
+    let since_s = model.live.in_doubt().first()?.floor.since_s;
+    let short = format!("{} m², {stations}", text::number(area_m2, 1));
+    Some([format!("{short}, since T+{}", text::clock(since_s)), short])
 }
 
-/// The two floors to which the scanned shares of a mission refer: the reachable and the whole floor; for a re-scan, the
-/// floor requested of it, and the reachable floor scanned by all runs.
+/// The two floors to which the scanned shares of a mission refer: the reachable and the whole floor; for a scan of a part
+/// of the floor, the requested and the reachable floor; for a re-scan, the floor requested of it, and the reachable floor
+/// scanned by all runs.
 pub(crate) struct Bases {
     /// The shares; `None` before the first step.
     shares: Option<[Shares; 2]>,
@@ -143,15 +141,24 @@ pub(crate) struct Bases {
 
 impl Bases {
     pub(crate) fn of(live: &Live) -> Self {
-        Self::counted(live, Earlier::shares)
+        Self::counted(live, Earlier::shares, Run::requested)
     }
 
-    /// The same for a frame; the shares of a re-scan are counted again only if its floor has changed.
+    /// The same for a frame; the shares that need a look at every cell are counted again only if the floor has changed.
     pub(crate) fn shown(look: &Look) -> Self {
-        Self::counted(&look.model.live, |before, own| look.cache.borrow_mut().rescan(before, own))
+        let live = &look.model.live;
+        Self::counted(
+            live,
+            |before, own| look.cache.borrow_mut().rescan(before, own),
+            |run| look.cache.borrow_mut().requested(live.id, run),
+        )
     }
 
-    fn counted(live: &Live, of_rescan: impl Fn(&Earlier, &Raster) -> [Shares; 2]) -> Self {
+    fn counted(
+        live: &Live,
+        of_rescan: impl Fn(&Earlier, &Raster) -> [Shares; 2],
+        of_part: impl Fn(&Run) -> Option<Shares>,
+    ) -> Self {
         let raster = live.run.coverage.as_ref().filter(|_| live.run.progress.is_some());
         match &live.scanned_before {
             Some(before) => Self {
@@ -159,6 +166,12 @@ impl Bases {
                 names: ["requested", "all runs"],
                 short: ["requested", "all runs"],
                 floors: ["requested floor", "reachable floor with the runs before"],
+            },
+            None if live.run.is_in_part() => Self {
+                shares: raster.and_then(|own| Some([of_part(&live.run)?, own.reachable()])),
+                names: ["requested", "reachable"],
+                short: ["requested", "reachable"],
+                floors: ["requested floor", "reachable floor"],
             },
             None => Self {
                 shares: raster.map(|own| [own.reachable(), own.whole()]),

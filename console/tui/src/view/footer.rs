@@ -12,7 +12,7 @@ use crate::model::replay::Jump;
 use crate::model::zone_draft::Form;
 use crate::model::{Model, Overlay, Screen, ui::Arrangement};
 use crate::theme::Role;
-use crate::update::{is_typing, offer::accepted, offered};
+use crate::update::{is_typing, offer::accepted, offered, typing::holds_by_space};
 use mission::{Order, Phase};
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -156,8 +156,13 @@ fn hints(model: &Model) -> Vec<Hint> {
     for action in shown {
         let is_text = contexts.contains(&Context::Text);
         let mut keys = model.console.keys.of(action).iter();
-        // In an input line a character is text, not a key.
-        let Some(key) = keys.find(|key| !(is_text && matches!(key, Key::Char(_)))) else { continue };
+        // In an input line a character is text, not a key; only the space holds until text has been typed.
+        let is_key = |key: &&Key| match key {
+            Key::Char(' ') if is_text => action.id == ActionId::Hold && holds_by_space(model),
+            Key::Char(_) => !is_text,
+            _ => true,
+        };
+        let Some(key) = keys.find(is_key) else { continue };
         let label = label(action, model);
         match hints.last_mut().filter(|last| last.label == label) {
             Some(last) => {
@@ -239,6 +244,9 @@ fn label(action: &Action, model: &Model) -> String {
         (ActionId::Accept, Overlay::None) => (model.ui.screen.row().opens)(model).unwrap_or_default(),
         (ActionId::Back, _) if model.ui.screen == Screen::Home => "quit",
         (ActionId::Accept, Overlay::Commands(_) | Overlay::Remedies { .. }) => "run",
+        (ActionId::Remedy(number), Overlay::Remedies { steps, .. }) if usize::from(number) <= steps.len() => {
+            "run"
+        }
         (ActionId::Accept, Overlay::Planners { selected, is_unfolded, .. })
             if matches!(model.planner_lines(*is_unfolded).get(*selected), Some(PlannerLine::Others(_))) =>
         {

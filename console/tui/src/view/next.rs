@@ -103,9 +103,16 @@ fn by_phase(model: &Model) -> Clauses {
 /// The end of a mission. It is not good as long as the vehicle may still move.
 fn ended(model: &Model, outcome: Outcome) -> Clauses {
     let run = &model.live.run;
-    let (role, state) = match outcome {
-        Outcome::Complete => (Role::Good, format!("DONE: {}.", run.end_reason)),
-        outcome => (Role::Warn, format!("ENDED ({}): {}.", outcome.word(), run.end_reason)),
+    let (role, end) = match outcome {
+        Outcome::Complete => (Role::Good, "DONE".to_owned()),
+        outcome => (Role::Warn, format!("ENDED ({})", outcome.word())),
+    };
+    let (role, state) = match model.live.doubt() {
+        Some((area_m2, _)) => {
+            let area_m2 = text::number(area_m2, 1);
+            (Role::Warn, format!("{end}, {area_m2} m² IN DOUBT: {}.", run.end_reason))
+        }
+        None => (role, format!("{end}: {}.", run.end_reason)),
     };
     let (role, warning) = match held::head(run) {
         Head::Held => (role, None),
@@ -161,10 +168,10 @@ fn more(model: &Model) -> impl Iterator<Item = String> {
         Screen::Result if model.live.run.is_survey() => {
             &["<rescan>: plan a scan of this map.", "<home>: home."]
         }
-        Screen::Result if model.live.missed().is_empty() && model.live.in_doubt().is_empty() => {
-            &["<again>: replan.", "<home>: home."]
+        Screen::Result if model.live.missed().is_empty() && model.live.doubt().is_none() => {
+            &["<again>: plan again.", "<home>: home."]
         }
-        Screen::Result => &["<again>: replan.", "<rescan>: re-scan.", "<home>: home."],
+        Screen::Result => &["<again>: plan again.", "<rescan>: re-scan.", "<home>: home."],
         Screen::Home => &["<result>: result."],
         _ => &["<result>: result.", "<home>: home."],
     };
@@ -240,8 +247,7 @@ fn idle(model: &Model) -> Clauses {
         model.live.run.is_survey() || model.planner().is_some() || model.live.run.planning.fault.is_some();
     let is_preparing = match model.live.run.standing.standing().readiness {
         Readiness::Preparing => true,
-        // The plan is requested as soon as the run is open.
-        Readiness::NoPlan => !is_opened,
+        Readiness::NoPlan => model.live.awaits_plan() || !is_opened,
         _ => false,
     };
     if model.live.busy.is_some() || is_preparing {
@@ -290,8 +296,10 @@ fn running(model: &Model) -> Clauses {
     let last = if let Some(alarm) = alarms.worst_returned() {
         let name = text::capitalized(&guide::name(&alarm.cause, &model.live.run));
         let figure = alarm.peak.as_ref().filter(|peak| !peak.limit.is_empty());
+        // A console that gives no orders acknowledges nothing.
+        let acknowledge = if model.live.is_look_only() { "" } else { ACKNOWLEDGE };
         let figure = figure.map(|peak| format!("It reached {}, limit {}.", peak.now, peak.limit));
-        [Some(format!("{name} (cleared). {ACKNOWLEDGE}")), figure]
+        [Some(format!("{name} (cleared). {acknowledge}").trim_end().to_owned()), figure]
     } else {
         [(role == Role::Title).then(|| "No action required.".to_owned()), None]
     };
@@ -333,7 +341,7 @@ fn done(run: &Run, progress: &Progress) -> String {
     let is_new = run.planning.plan.as_ref().is_some_and(|plan| plan.driven_m > 0.0);
     if is_new && run.covers() {
         let floor = text::percent(progress.covered_reachable);
-        return format!("path {done} % of the new plan, floor {floor} %");
+        return format!("{done} % of the new plan driven, {floor} % of the floor scanned");
     }
     format!("path {done} % done")
 }

@@ -29,7 +29,7 @@ const NAMES: usize = 24;
 /// Rows of the list of files beside those of the files: the frame, the headings and a blank.
 const FRAME: u16 = 4;
 /// Width of the last changes, columns.
-const CHANGES: u16 = 50;
+const CHANGES: u16 = 36;
 
 /// The areas of the files, of the details of the selected one, and of the last changes. A small screen shows one of
 /// them at a time.
@@ -182,7 +182,7 @@ fn about_in(look: &Look, plugin: &Plugin<'_>, (form, columns): (Form, usize)) ->
     let wrapped = |role: Role, words: &str| -> Vec<Parts> {
         text::wrap(words, columns).into_iter().map(|line| vec![(role, format!(" {line}"))]).collect()
     };
-    let mut rows = wrapped(role(plugin.state), &look.keys(state_words(plugin.state)));
+    let mut rows = wrapped(role(plugin.state), &look.keys(state_words(look, plugin.state)));
     if !plugin.reason.is_empty() {
         rows.extend(wrapped(Role::Warn, plugin.reason));
     }
@@ -212,9 +212,10 @@ fn about_in(look: &Look, plugin: &Plugin<'_>, (form, columns): (Form, usize)) ->
     rows
 }
 
-fn state_words(state: PluginState) -> &'static str {
+fn state_words(look: &Look, state: PluginState) -> &'static str {
     match state {
         PluginState::Ready => "ready",
+        PluginState::Active if look.model.live.is_replay() => "active in the replayed run",
         PluginState::Active => "active: one of its planners is driving",
         PluginState::Changed => "CHANGED on disk; <planner>: choose the planner again to use the new build",
         PluginState::Refused => "REFUSED",
@@ -266,7 +267,7 @@ fn parameter_rows(infos: &[ParamInfo], tables: usize, columns: usize) -> Vec<Par
 fn parameter_row(info: &ParamInfo, columns: usize) -> Parts {
     let key = text::column(&info.key, KEY);
     let allowed = text::column(&parameter::range(info), ALLOWED);
-    let room = columns.saturating_sub(KEY + ALLOWED + 5);
+    let room = columns.saturating_sub(KEY + ALLOWED + 6);
     let label = text::wording([info.label.clone(), String::new()], room);
     let room = columns.saturating_sub(KEY + 3);
     let allowed = text::column(&text::fit(&format!(" {allowed}  {label}"), room), room);

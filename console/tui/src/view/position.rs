@@ -57,7 +57,7 @@ fn wide_lines(look: &Look, inner: Rect) -> Vec<(u8, Line<'static>)> {
     // The least known clock counts, because it limits the accuracy of every fix that uses it.
     let sigmas_m = run.position.clocks.iter().map(|clock| clock.offset_m.sigma);
     if let Some(sigma_m) = sigmas_m.max_by(f64::total_cmp) {
-        let words = format!("known to ±{:.2} m of sound", 2.0 * sigma_m);
+        let words = format!("agree to ±{:.2} m of range", 2.0 * sigma_m);
         lines.push((2, row("clocks", (Role::Text, words))));
     }
     let rows = usize::from(inner.height).saturating_sub(lines.len()).max(1);

@@ -227,7 +227,7 @@ fn row(run: &PastRun, mark: &str, widths: Widths) -> Parts {
         (role, text::column(&text::fit(&run.end, END - 1), END)),
         (Role::Dim, text::column(&time, widths.time)),
         (Role::Text, format!("{reach:>7}")),
-        (Role::Dim, text::fit(&format!("  {}", notes(run)), widths.notes)),
+        (Role::Dim, fitting_notes(run, widths.notes)),
     ]
 }
 
@@ -239,6 +239,15 @@ fn notes(run: &PastRun) -> String {
     let all = verified.into_iter().chain(bookmarks).chain(run.remark.clone()).chain(problem);
     all.collect::<Vec<_>>().join(" ")
 }
+
+/// The notes as far as they say something in a given width.
+fn fitting_notes(run: &PastRun, columns: usize) -> String {
+    let notes = text::fit(&format!("  {}", notes(run)), columns);
+    if columns < LEAST_NOTES && notes.contains('…') { String::new() } else { notes }
+}
+
+/// The width from which a shortened note is shown, columns.
+const LEAST_NOTES: usize = 8;
 
 fn about(look: &Look, frame: &mut Frame, area: Rect) {
     if let Some(run) = look.model.review.run(&look.model.home) {

@@ -105,6 +105,12 @@ fn laid_out(cells: [String; 8], columns: usize) -> String {
     cells.join(" ")
 }
 
+/// Whether the last fix did not use a station.
+pub(super) fn is_unused(look: &Look, station: StationId) -> bool {
+    let fix = look.run.position.fix.as_ref();
+    fix.is_some_and(|fix| fix.excluded.iter().any(|(excluded, _)| *excluded == station))
+}
+
 /// The result of the last fix for a station: its residual and the largest one that does not contradict the fix, metres, and
 /// a word for the result.
 fn state(look: &Look, station: StationId) -> (Role, Option<f64>, Option<f64>, &'static str) {

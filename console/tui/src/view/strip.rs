@@ -41,7 +41,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     add(1, vec![state(look, columns)]);
     add(3, alarm(look, columns));
     if !is_asked {
-        add(1, wrapped(look, &next::clauses(look.model), columns));
+        add(1, wrapped(look, &without_alarm(look, next::clauses(look.model)), columns));
     }
     add(2, said.map(|part| look.line([part])).collect());
     add(4, vec![plain(look, &position(look), columns)]);
@@ -182,6 +182,15 @@ fn position(look: &Look) -> String {
         model.live.run.position.error_m().map_or_else(|| "-".into(), |error_m| text::number(error_m, 2));
     let lost = if model.live.run.position.lost { " LOST" } else { "" };
     format!(" {scanned}±{error} m{lost}")
+}
+
+/// The clauses without the one that only repeats the alarm above them.
+fn without_alarm(look: &Look, (role, mut clauses): Clauses) -> Clauses {
+    if let Some(alarm) = look.run.alarms.worst() {
+        let repeated = format!("{}.", text::capitalized(&alarm.text));
+        clauses.retain(|clause| *clause != repeated);
+    }
+    (role, clauses)
 }
 
 /// Clauses, wrapped into lines.

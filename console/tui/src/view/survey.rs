@@ -3,7 +3,7 @@
 use super::look::{Look, fill, ranked};
 use super::text;
 use crate::model::survey::Survey;
-use crate::model::{Model, Pane};
+use crate::model::{Model, Pane, Run};
 use crate::theme::Role;
 use exploration::Column;
 use ratatui::Frame;
@@ -23,7 +23,7 @@ pub(super) fn draw(look: &Look, survey: &Survey, frame: &mut Frame, area: Rect) 
     let (columns, rows) = (usize::from(inner.width), usize::from(inner.height));
     let mut lines = ranked(summary(look, survey, columns), rows);
     let room = rows.saturating_sub(lines.len());
-    lines.extend(list(survey, room, columns).into_iter().map(|row| look.line([(Role::Text, row)])));
+    lines.extend(list(look.run, survey, room, columns).into_iter().map(|row| look.line([(Role::Text, row)])));
     fill(frame, area, block, lines);
 }
 
@@ -103,10 +103,12 @@ pub(in crate::view) fn rest(path: &[Point], here: Point) -> &[Point] {
     path.get(nearest..).unwrap_or_default()
 }
 
-/// The columns, one in a row, as on the map; if they do not fit, the last row states how many are left out.
-fn list(survey: &Survey, rows: usize, width: usize) -> Vec<String> {
-    let all = survey.columns.iter().enumerate();
-    let mut lines: Vec<String> = all.take(rows).map(|(index, column)| row(index, column, width)).collect();
+/// The columns, one in a row, by their numbers on the map; if they do not fit, the last row states how many are left out.
+fn list(run: &Run, survey: &Survey, rows: usize, width: usize) -> Vec<String> {
+    let mut all: Vec<(usize, &Column)> = run.column_numbers().into_iter().zip(&survey.columns).collect();
+    all.sort_by_key(|(number, _)| *number);
+    let all = all.into_iter().take(rows);
+    let mut lines: Vec<String> = all.map(|(number, column)| row(number, column, width)).collect();
     let left_out = survey.columns.len() - lines.len();
     if left_out > 0 && lines.pop().is_some() {
         let more = if lines.is_empty() { "" } else { "and " };
@@ -117,11 +119,11 @@ fn list(survey: &Survey, rows: usize, width: usize) -> Vec<String> {
 }
 
 /// A column: its number on the map, its centre and its radius, with their 95 % errors.
-fn row(index: usize, column: &Column, width: usize) -> String {
+fn row(number: usize, column: &Column, width: usize) -> String {
     let place = text::place(column.center);
     let radius = text::number(column.radius_m, 2);
     let [center_m, radius_m] = column.errors_95_m().map(|error_m| text::number(error_m, 2));
-    let number = format!(" {:>2}", index + 1);
+    let number = format!(" {number:>2}");
     let wordings = [
         format!("{number}  {place} ±{center_m} m  radius {radius} ±{radius_m} m"),
         format!("{number}  {place} ±{center_m}, r {radius} ±{radius_m}"),

@@ -109,7 +109,8 @@ fn narrow_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)
     if tether.is_broken {
         return vec![row(0, "", (Role::Crit, format!("torn, {out} m off the reel")))];
     }
-    let out = [format!("{out} of {reel} m out"), format!("{out} of {reel} m")];
+    let out = [format!("out {out} of {reel} m"), format!("out {out}/{reel} m")];
+    let out = labelled(out_share(look, tether), out, room);
     let pull = pull(look, tether, ("reel needs ", room)).map(|pull| row(4, "", pull));
     let felt = tether.measured.into_iter().flat_map(|measured| {
         let (label, most_n) = felt_where(look);
@@ -119,7 +120,7 @@ fn narrow_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)
         ]
     });
     [
-        row(1, "", (out_role(look, tether), metered(out_share(look, tether), out, room))),
+        row(1, "", (out_role(look, tether), out)),
         row(2, "", (wrap_role(look, tether), worst(look, tether, ("wrap ", room)))),
         row(6, "total ", (Role::Text, total(tether))),
     ]
@@ -141,6 +142,13 @@ fn reel(look: &Look) -> String {
 /// The fullest wording that fits beside a meter.
 fn metered(share: f64, words: [String; 2], room: usize) -> String {
     format!("{} {}", text::meter(share), text::wording(words, room.saturating_sub(text::METER + 1)))
+}
+
+/// A figure with its name in a longer or a shorter wording beside a meter, or the longer wording alone: without its name, a
+/// meter could be that of any figure.
+fn labelled(share: f64, [long, short]: [String; 2], room: usize) -> String {
+    let beside = |words: &str| format!("{} {words}", text::meter(share));
+    text::wording([beside(&long), beside(&short), long], room)
 }
 
 fn metres(length_m: f64) -> String {
@@ -187,8 +195,12 @@ fn worst(look: &Look, tether: &Tether, (label, room): (&str, usize)) -> String {
     let limit = limits(look).map_or_else(|| "-".into(), |limits| degrees(limits.wrap_max_rad));
     let turn = if most.wrap_rad > 0.0 { "CCW" } else { "CW" };
     let wrap = format!("{}° {turn} on {}", degrees(most.wrap_rad.abs()), most.on);
-    let whole = if label.is_empty() { format!("{wrap}, max {limit}°") } else { format!("{label}{wrap}") };
-    metered(wrap_share(look, tether), [whole, wrap], room)
+    let share = wrap_share(look, tether);
+    if label.is_empty() {
+        return metered(share, [format!("{wrap}, max {limit}°"), wrap], room);
+    }
+    let short = wrap.replace(" on ", " ");
+    labelled(share, [wrap, short].map(|words| format!("{label}{words}")), room)
 }
 
 fn total(tether: &Tether) -> String {
@@ -206,8 +218,8 @@ fn pull(look: &Look, tether: &Tether, (label, room): (&str, usize)) -> Option<(R
         _ => Role::Text,
     };
     let [now, most] = [pull_n, reel.pull_n].map(|newtons| text::number(newtons, 1));
-    let words = format!("{label}{now} of {most} N");
-    Some((role, metered(share, [words.clone(), words], room)))
+    let words = [format!("{label}{now} of {most} N"), format!("{label}{now}/{most} N")];
+    Some((role, labelled(share, words, room)))
 }
 
 /// Where the pull is measured, and its largest permitted value there, newtons. A simulated robot feels the tether; a real

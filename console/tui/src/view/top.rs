@@ -16,17 +16,18 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let model = look.model;
     let wide = Arrangement::of(frame.area().width, frame.area().height) == Arrangement::Wide;
     let gap = if wide { "   " } else { " " };
-    let (state, time, names) = (state(model), time(model), Names::of(model));
+    let names = Names::of(model);
     let sum = |parts: &Parts| parts.iter().map(|(_, text)| text::width(text)).sum::<usize>();
-    let fixed = 1 + 3 * gap.len() + sum(&state) + sum(&time);
-    let columns = usize::from(area.width).saturating_sub(fixed);
-    let alarms_in =
-        |counts, names: usize| Some(alarms(model, counts)).filter(|alarms| sum(alarms) + names <= columns);
-    let alarms = alarms_in(Counts::Long, names.width())
-        .filter(|_| area.width >= LONG_ALARMS)
-        .or_else(|| alarms_in(Counts::Short, text::width(&names.scenario)))
-        .unwrap_or_else(|| alarms(model, Counts::Worst));
-    let room = columns.saturating_sub(sum(&alarms));
+    let room = |[state, time, alarms]: &[Parts; 3]| {
+        let fixed = 1 + 3 * gap.len() + sum(state) + sum(time) + sum(alarms);
+        usize::from(area.width).saturating_sub(fixed)
+    };
+    // The name of the scenario is shortened last.
+    let long = [state(model), time(model), alarms(model, Counts::Long)];
+    let long = Some(long).filter(|parts| area.width >= LONG_ALARMS && names.width() <= room(parts));
+    let others = long.unwrap_or_else(|| beside(model, |parts| text::width(&names.scenario) <= room(parts)));
+    let room = room(&others);
+    let [state, time, alarms] = others;
     let scenario = text::fit(&names.scenario, room);
     let mut room = room - text::width(&scenario);
     // An item that does not fit beside the scenario is left out completely.
@@ -53,6 +54,27 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         [vec![(Role::Text, " ".into())], state, blank(), named, blank(), time, blank(), alarms].concat();
     frame.render_widget(look.line(line), area);
 }
+
+/// State, time and alarms in the longest forms that leave room for the name of the scenario; in the shortest ones if none
+/// does.
+fn beside(model: &Model, fits: impl Fn(&[Parts; 3]) -> bool) -> [Parts; 3] {
+    let full = |counts| [state(model), time(model), alarms(model, counts)];
+    let briefly = || [state(model), brief(time(model)), alarms(model, Counts::Letters)];
+    let least = || [state(model).split_off(1), brief(time(model)), alarms(model, Counts::Letters)];
+    let forms = [Counts::Short, Counts::Worst, Counts::Letters].map(full);
+    forms.into_iter().chain([briefly()]).find(fits).unwrap_or_else(least)
+}
+
+/// The time with a mark instead of the words for a saved recording.
+fn brief(mut time: Parts) -> Parts {
+    for (_, text) in &mut time {
+        *text = text.replace(SAVED, "REC✓");
+    }
+    time
+}
+
+/// A recording that is complete.
+const SAVED: &str = "REC saved";
 
 /// The names of the scenario and the planner.
 struct Names {
@@ -94,7 +116,7 @@ pub(super) fn state(model: &Model) -> Parts {
         Phase::Waiting => ("OPER", Role::Title, "■ IDLE"),
         Phase::Running(Gait::Steady) => ("AUTO", Role::Run, "▶ RUN"),
         Phase::Running(Gait::OneTick | Gait::To(_)) => ("OPER", Role::Run, "▶ STEP"),
-        Phase::Running(Gait::Back) => ("OPER", Role::Run, "▶ BACK"),
+        Phase::Running(Gait::Back) => ("AUTO", Role::Run, "▶ BACK"),
         Phase::Held(_) if model.live.run.is_live() => ("LIVE", held_role(model), held_word(model)),
         // The operator is in control if only an order can move the robot, whatever has held it.
         Phase::Held(hold) if hold.resumes.is_never() => ("OPER", Role::Hold, "‖ HOLD"),
@@ -146,9 +168,7 @@ pub(super) fn time(model: &Model) -> Parts {
 
 fn recording(model: &Model) -> (Role, String) {
     match model.live.health.recording {
-        _ if model.live.result.as_ref().is_some_and(|result| result.is_kept) => {
-            (Role::Good, "REC saved".into())
-        }
+        _ if model.live.result.as_ref().is_some_and(|result| result.is_kept) => (Role::Good, SAVED.into()),
         Recording::On => (Role::Good, "REC●".into()),
         Recording::Off => (Role::Dim, "REC-".into()),
         Recording::Failed(_) => (Role::Crit, "REC✗".into()),
@@ -164,6 +184,8 @@ pub(super) enum Counts {
     Short,
     /// The number of the most severe ones and of all others.
     Worst,
+    /// The same with a letter for the severity, and a star if any alarm is unacknowledged: `2C* +1`.
+    Letters,
 }
 
 /// The open alarms.
@@ -178,12 +200,17 @@ pub(super) fn alarms(model: &Model, counts: Counts) -> Parts {
         (Severity::Watch, Role::Watch, "watch"),
     ];
     let open = severities.into_iter().filter(|(severity, ..)| alarms.count(*severity) > 0);
-    let most = if counts == Counts::Worst { 1 } else { severities.len() };
+    let is_brief = matches!(counts, Counts::Worst | Counts::Letters);
+    let most = if is_brief { 1 } else { severities.len() };
     let mut parts: Parts = if counts == Counts::Long { vec![(Role::Title, "ALARM ".into())] } else { vec![] };
     for (severity, role, word) in open.clone().take(most) {
         let words = match alarms.unacknowledged(severity) {
             new if new > 0 && counts == Counts::Long => {
                 format!("{} {word} ({new} unacknowledged)", alarms.count(severity))
+            }
+            new if counts == Counts::Letters => {
+                let letter = if severity == Severity::Watch { "w".into() } else { word[..1].to_uppercase() };
+                format!("{}{letter}{}", alarms.count(severity), if new > 0 { "*" } else { "" })
             }
             _ => format!("{} {word}", alarms.count(severity)),
         };
@@ -194,7 +221,7 @@ pub(super) fn alarms(model: &Model, counts: Counts) -> Parts {
         parts.push((Role::Text, format!("+{others} ")));
     }
     let is_new = open.clone().any(|(severity, ..)| alarms.unacknowledged(severity) > 0);
-    if is_new && counts != Counts::Long {
+    if is_new && !matches!(counts, Counts::Long | Counts::Letters) {
         parts.push((Role::Title, "unack ".into()));
     }
     if let Some((_, last)) = parts.last_mut() {

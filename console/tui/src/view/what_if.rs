@@ -1,7 +1,7 @@
 //! Forecasts of how a held mission would continue with different planners: paths on the map, and figures side by
 //! side.
 
-use super::look::{Look, Parts, fill};
+use super::look::{Look, Parts, fill, ranked};
 use super::{map, text};
 use crate::model::ui::Arrangement;
 use crate::model::{Candidate, Forecast, WhatIf};
@@ -30,18 +30,36 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
         area
     };
     let title = format!("What if, from T+{}", text::clock(what_if.t_s));
-    let note = format!("{} of {} computed", what_if.n_done(), what_if.candidates.len());
+    let inner = look.block(Role::Focus, "", "").inner(table_area);
+    let (columns, height) = (usize::from(inner.width), usize::from(inner.height));
+    let table = table(look, what_if, columns);
+    // Why a forecast is held comes before the figures that matter least.
+    let shown = [Remarks::All, Remarks::Reasons, Remarks::Selected]
+        .map(|which| (which, remarks(what_if, which, columns)));
+    let fits = shown.iter().position(|(_, remarks)| table.len() + remarks.len() <= height);
+    let (which, remarks) = shown.into_iter().nth(fits.unwrap_or(2)).unwrap_or((Remarks::All, Vec::new()));
+    let done = format!("{} of {} computed", what_if.n_done(), what_if.candidates.len());
+    let others = "<previous-candidate> <next-candidate> other reasons";
+    let has_others = which == Remarks::Selected && what_if.candidates.len() > 1;
+    let notes = [if has_others { look.keys(&format!("{done}  {others}")) } else { done.clone() }, done];
+    let note = text::wording(notes, usize::from(table_area.width).saturating_sub(text::width(&title) + 8));
     let block = look.block(Role::Focus, &title, &note);
-    let inner = block.inner(table_area);
-    let mut rows = table(look, what_if, usize::from(inner.width));
-    if usize::from(inner.height) > rows.len() + 4 {
-        rows.push(Parts::new());
+    let mut lines = ranked(
+        table.into_iter().map(|(rank, parts)| (rank, look.line(parts))).collect(),
+        height.saturating_sub(remarks.len()).max(LEAST),
+    );
+    if height > lines.len() + remarks.len() {
+        lines.push(look.line(Parts::new()));
     }
-    rows.extend(remarks(what_if, usize::from(inner.width)));
-    fill(frame, table_area, block, rows.into_iter().map(|parts| look.line(parts)).collect());
+    lines.extend(remarks.into_iter().map(|parts| look.line(parts)));
+    fill(frame, table_area, block, lines);
 }
 
-fn table(look: &Look, what_if: &WhatIf, columns: usize) -> Vec<Parts> {
+/// The fewest rows of the table: letter, planner, end.
+const LEAST: usize = 3;
+
+/// The table, its rows with their ranks: those with the highest numbers are dropped first.
+fn table(look: &Look, what_if: &WhatIf, columns: usize) -> Vec<(u8, Parts)> {
     let width = columns.saturating_sub(LABEL + 1) / what_if.candidates.len().max(1);
     let row = |label: &str, value: &dyn Fn(usize, &Candidate) -> (Role, String)| -> Parts {
         let cells = what_if.candidates.iter().enumerate().map(|(index, candidate)| {
@@ -51,29 +69,32 @@ fn table(look: &Look, what_if: &WhatIf, columns: usize) -> Vec<Parts> {
         });
         std::iter::once((Role::Dim, format!(" {label:<LABEL$}"))).chain(cells).collect()
     };
+    let letters = row("", &|index, _| {
+        let mark = if index == what_if.selected { ">" } else { "" };
+        let letter = char::from(b'A' + index as u8);
+        (Role::Text, format!("{mark}{letter}{}", if index == 0 { " current" } else { "" }))
+    });
     let mut rows = vec![
-        row("", &|index, _| {
-            let mark = if index == what_if.selected { ">" } else { "" };
-            let letter = char::from(b'A' + index as u8);
-            (Role::Text, format!("{mark}{letter}{}", if index == 0 { " current" } else { "" }))
-        }),
-        row("planner", &|_, candidate| (Role::Text, candidate.choice.id.clone())),
-        row("end", &|_, candidate| end(candidate)),
-        row("tether", &|_, candidate| certificate(candidate)),
+        (0, letters),
+        (0, row("planner", &|_, candidate| (Role::Text, candidate.choice.id.clone()))),
+        (0, row("end", &|_, candidate| end(candidate))),
+        (4, row("tether", &|_, candidate| certificate(candidate))),
     ];
     let mission = look.run.about.as_ref().map(|about| &about.mission);
     let first = what_if.candidates.first().and_then(outlook);
     for figure in FIGURES {
-        rows.push(row(figure.label, &|index, candidate| {
+        let cells = row(figure.label, &|index, candidate| {
             let Some(outlook) = outlook(candidate) else { return (Role::Dim, "-".into()) };
             let beside = (index > 0 && width >= DIFFERENCE).then_some(first).flatten();
             figure.cell(outlook, beside, mission)
-        }));
+        });
+        rows.push((figure.rank, cells));
     }
-    rows.push(row("parameters", &|_, candidate| match candidate.choice.parameters.len() {
+    let parameters = row("parameters", &|_, candidate| match candidate.choice.parameters.len() {
         0 => (Role::Text, "defaults".into()),
         n => (Role::Text, format!("{n} changed")),
-    }));
+    });
+    rows.push((8, parameters));
     rows
 }
 
@@ -112,6 +133,8 @@ fn certificate(candidate: &Candidate) -> (Role, String) {
 #[derive(Clone, Copy)]
 struct Figure {
     label: &'static str,
+    /// How soon the row is dropped if space is short: the highest number first.
+    rank: u8,
     unit: &'static str,
     decimals: usize,
     value: fn(&Outlook) -> Option<f64>,
@@ -120,29 +143,29 @@ struct Figure {
 }
 
 const fn figure(
-    label: &'static str,
+    (label, rank): (&'static str, u8),
     unit: &'static str,
     decimals: usize,
     value: fn(&Outlook) -> Option<f64>,
     limit: fn(&MissionConfig) -> Option<(f64, bool)>,
 ) -> Figure {
-    Figure { label, unit, decimals, value, limit }
+    Figure { label, rank, unit, decimals, value, limit }
 }
 
 const FIGURES: [Figure; 6] = [
-    figure("after, min", "", 1, |o| Some(o.after_s / 60.0), |_| None),
-    figure("path", " m", 1, |o| Some(o.length_m), |_| None),
-    figure("reachable", " %", 1, |o| Some(world::coverage::percent(o.reachable)), |_| None),
-    figure("clearance", " m", 2, |o| Some(o.clearance_min_m), |m| Some((m.clearance_m, true))),
+    figure(("ends after", 2), " min", 1, |o| Some(o.after_s / 60.0), |_| None),
+    figure(("path", 5), " m", 1, |o| Some(o.length_m), |_| None),
+    figure(("reachable", 1), " %", 1, |o| Some(world::coverage::percent(o.reachable)), |_| None),
+    figure(("clearance", 3), " m", 2, |o| Some(o.clearance_min_m), |m| Some((m.clearance_m, true))),
     figure(
-        "tether out",
+        ("tether out", 6),
         " m",
         1,
         |o| o.tether_length_max_m,
         |m| Some((m.tether.as_ref()?.limits.reel_length_m, false)),
     ),
     figure(
-        "wrap",
+        ("wrap", 7),
         "°",
         0,
         |o| o.wrap_max_rad.map(f64::to_degrees),
@@ -177,10 +200,24 @@ impl Figure {
     }
 }
 
-/// How the forecasts that do not complete the task end, how the selected one ends, and what the forecasts are based on.
-fn remarks(what_if: &WhatIf, columns: usize) -> Vec<Parts> {
+/// The remarks that fit below the table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Remarks {
+    /// The reasons, and what the forecasts are based on.
+    All,
+    /// How the forecasts that do not complete the task end, and how the selected one ends.
+    Reasons,
+    /// How the selected forecast ends.
+    Selected,
+}
+
+/// The remarks, in lines.
+fn remarks(what_if: &WhatIf, which: Remarks, columns: usize) -> Vec<Parts> {
     let reason = |(index, candidate): (usize, &Candidate)| {
         let is_selected = index == what_if.selected;
+        if which == Remarks::Selected && !is_selected {
+            return None;
+        }
         let letter = char::from(b'A' + index as u8);
         let (role, why) = match &candidate.made {
             Some(Ok(Forecast { outlook, .. })) if outlook.outcome.is_none() => {
@@ -206,7 +243,9 @@ fn remarks(what_if: &WhatIf, columns: usize) -> Vec<Parts> {
         let values = candidate.choice.parameters.iter().map(|(key, value)| format!("{key} = {value}"));
         (Role::Text, format!("{} with {}.", candidate.choice.id, values.collect::<Vec<_>>().join(", ")))
     });
-    let words = reasons.chain(set).chain([basis]);
+    let basis = Some(basis).filter(|_| which == Remarks::All);
+    let set = set.filter(|_| which != Remarks::Selected);
+    let words = reasons.chain(set).chain(basis);
     words
         .flat_map(|(role, words)| {
             text::wrap(&words, columns.saturating_sub(2))

@@ -1,6 +1,6 @@
 //! Floor in doubt: what the console shows of the floor that a biased station takes back.
 
-use crate::fixture::{RICH, Screen};
+use crate::fixture::{PLAIN, RICH, Screen};
 use crate::overviews::ended;
 use crate::panes::missed_summary;
 use crate::screens::{drawn, text};
@@ -9,7 +9,7 @@ use account::{InDoubt, TakenBack};
 use mission::EventKind;
 use tui::model::{Cause, Pane};
 use tui::{Key, Msg, RunMsg};
-use world::{Point, StationId};
+use world::{CellRun, Point, StationId};
 
 fn in_doubt() -> InDoubt {
     let station = "S2".into();
@@ -22,7 +22,7 @@ fn in_doubt() -> InDoubt {
         area_m2: 41.87,
         left_m2: None,
     };
-    InDoubt { floor, at: Some(Point::new(3.2, -1.5)) }
+    InDoubt { floor, at: Some(Point::new(3.2, -1.5)), cells: Vec::new() }
 }
 
 /// Tells a screen that station S2 is biased, and which floor is therefore in doubt.
@@ -103,4 +103,42 @@ fn the_result_lists_the_floor_in_doubt_and_how_to_scan_it_again() {
     replayed.hear(RunMsg::Closed(Box::new(closed)));
     replayed.model.live.run.clock.t_s = 300.0;
     assert_eq!(replayed.model.live.in_doubt().len(), 1);
+}
+
+/// A run that has ended, with floor in doubt around a place that was scanned.
+fn ended_in_doubt() -> Screen {
+    let (mut screen, mut closed) = ended();
+    closed.summary.floor = missed_summary().floor;
+    let floor = screen.model.live.run.coverage.as_ref().expect("a floor").floor();
+    let is_beside_wall = |cell: &usize| {
+        let at = floor.center(*cell);
+        at.x > 6.0 && at.y.abs() < 3.0
+    };
+    let cells = (0..floor.len()).filter(is_beside_wall).map(|cell| CellRun(cell as u32, 1)).collect();
+    screen.hear(RunMsg::InDoubt(vec![InDoubt { cells, ..in_doubt() }]));
+    screen.hear(RunMsg::Closed(Box::new(closed)));
+    screen
+}
+
+#[test]
+fn floor_in_doubt_leads_the_result_and_is_a_kind_of_its_own_on_the_map() {
+    for caps in [RICH, PLAIN] {
+        let mut screen = ended_in_doubt();
+        for size in SIZES {
+            screen.send(Msg::Resize { width: size.0, height: size.1 });
+            screen.model.ui.pane = Pane::Figures;
+            let first = text(&drawn(&screen.model, caps, size));
+            assert!(first.contains(", 41.9 m² IN DOUBT"), "{size:?}\n{first}");
+            assert!(first.contains("IN DOUBT: 41.9 m², scanned while"), "{size:?}\n{first}");
+            screen.model.ui.pane = Pane::Map;
+            let map = text(&drawn(&screen.model, caps, size));
+            assert!(size.0 < 80 || map.contains("in doubt"), "{size:?}\n{map}");
+            assert!(
+                caps == RICH || map.matches("dd").count() > usize::from(size.0 >= 120),
+                "{size:?}\n{map}"
+            );
+        }
+    }
+    let sound = text(&drawn(&ended().0.model, PLAIN, (120, 36)));
+    assert!(!sound.to_lowercase().contains("in doubt"), "{sound}");
 }

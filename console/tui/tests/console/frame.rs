@@ -4,6 +4,7 @@
 use crate::drawing;
 use crate::ending::{driving_back, ending};
 use crate::fixture::{PLAIN, RICH, Screen};
+use crate::overviews::ended;
 use crate::screens::{drawn, store_at, text};
 use mission::{EventKind, Severity};
 use tui::model::Screen as Name;
@@ -123,4 +124,27 @@ fn the_pane_with_the_focus_is_marked_without_colour() {
     assert!(marked(&screen)[0].contains("▸ Map"), "{:?}", marked(&screen));
     screen.press([Key::Tab]);
     assert!(marked(&screen)[0].contains("▸ Events") && marked(&screen).len() == 1, "{:?}", marked(&screen));
+}
+
+#[test]
+fn the_name_of_the_scenario_is_whole_and_the_unused_station_is_marked_at_every_size() {
+    for mut screen in [Screen::running(), Screen::held(), ended().0] {
+        let name = "cover-unknown-columns";
+        if let Some(about) = &mut screen.model.live.run.about {
+            name.clone_into(&mut about.scenario);
+        }
+        for size in SIZES {
+            screen.send(Msg::Resize { width: size.0, height: size.1 });
+            for caps in [RICH, PLAIN] {
+                let shown = text(&drawn(&screen.model, caps, size));
+                let top = shown.lines().next().unwrap_or_default();
+                assert!(
+                    top.contains(name) && top.contains("T+00:16:07") && top.contains('2'),
+                    "{size:?}\n{top}"
+                );
+                let is_map = screen.model.ui.screen == Name::Mission;
+                assert!(!is_map || shown.contains("S4!") && !shown.contains("S1!"), "{size:?}\n{shown}");
+            }
+        }
+    }
 }

@@ -431,7 +431,7 @@ fn the_check_of_a_plan_names_what_it_leaves_out() {
     let screen = planned();
     let checks = screen.model.checks();
     let plan = checks.iter().find(|check| check.what == "plan").expect("a check");
-    assert!(plan.found.ends_with("m, all but 3 areas, 5.1 m²"), "{}", plan.found);
+    assert!(plan.found.ends_with("m, 3 areas left out, 5.13 m²"), "{}", plan.found);
 }
 
 #[test]

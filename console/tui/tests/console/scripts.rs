@@ -569,7 +569,7 @@ fn another_mission_is_opened_only_when_none_is_in_progress() {
     screen.hear(RunMsg::Events(late));
     assert_eq!(screen.model.live.run, tui::model::Run::default());
     screen.type_text("S");
-    assert_eq!(notice(&screen), "no mission loaded yet");
+    assert_eq!(notice(&screen), "the scenario is loading; start when the plan is ready");
 }
 
 #[test]

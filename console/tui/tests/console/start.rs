@@ -2,8 +2,11 @@
 
 use crate::fixture::{PLAIN, Screen, choice, tether};
 use crate::screens::{drawn, text};
+use crate::sizes::SIZES;
 use mission::{CheckOutcome, EventKind, Order, ParamValue};
-use tui::{Effect, Key, Msg, RunMsg, actions::ActionId, model::Overlay, update::offered};
+use tui::{
+    Effect, Key, Model, Msg, RunId, RunMsg, Source, Speed, actions::ActionId, model::Overlay, update::offered,
+};
 
 fn hear(screen: &mut Screen, kind: EventKind) {
     let event = screen.mission.now(kind);
@@ -34,6 +37,10 @@ fn certified() -> Screen {
 #[test]
 fn while_a_plan_is_made_a_start_is_refused_and_says_what_to_wait_for() {
     let mut screen = Screen::opened();
+    assert_eq!(why(&screen), "the plan follows; start when it is ready");
+    let set = Order::SetParameter { key: "gain".into(), value: ParamValue::Float(2.0) };
+    hear(&mut screen, EventKind::Ordered { order: Order::Plan });
+    hear(&mut screen, EventKind::Ordered { order: set });
     assert!(why(&screen).contains("there is no plan to start with; make one first"), "{}", why(&screen));
     hear(&mut screen, EventKind::Ordered { order: Order::Plan });
     assert!(why(&screen).contains("the plan is not ready yet"), "{}", why(&screen));
@@ -51,6 +58,30 @@ fn while_a_plan_is_made_a_start_is_refused_and_says_what_to_wait_for() {
     screen.hear(RunMsg::Events(events[1..].to_vec()));
     assert_eq!(offered(&screen.model, ActionId::Start), Ok(()));
     assert_eq!(check(&screen, "plan").0, CheckOutcome::Passed);
+}
+
+#[test]
+fn while_a_scenario_loads_the_screen_says_so_and_blames_nothing() {
+    let mut loading = Screen::opened();
+    loading.model = Model::opened(RunId(1), Source::Demo, Speed::default());
+    assert_eq!(why(&loading), "the scenario is loading; start when the plan is ready");
+    let mut opened = Screen::opened();
+    opened.send(Msg::Planners { found: Vec::new(), refused: Vec::new() });
+    opened.model.console.planners.clear();
+    opened.model.live.run.planning.info = None;
+    for (screen, says) in [(&mut loading, "Loading; the plan follows."), (&mut opened, "The plan follows.")] {
+        screen.model.ui.go(tui::model::Screen::Plan);
+        for size in SIZES {
+            screen.send(Msg::Resize { width: size.0, height: size.1 });
+            let shown = text(&drawn(&screen.model, PLAIN, size));
+            for wrong in ["no planner found", "planning has not begun", "Start blocked", "odometry alone"] {
+                assert!(!shown.contains(wrong), "{size:?} {wrong}\n{shown}");
+            }
+            assert!(size.0 < 120 || shown.contains(says), "{size:?}\n{shown}");
+        }
+        let said = tui::plain::Said::default().next(&screen.model).join(" ");
+        assert!(!said.contains("blocked"), "{said}");
+    }
 }
 
 #[test]

@@ -249,7 +249,7 @@ fn a_tether_alarm_says_what_happened_and_where() {
     let held = screen.mission.held(HoldReason::Tether { message });
     screen.hear(RunMsg::Events(vec![held]));
     let line = state(&screen);
-    assert!(line.starts_with("HELD: tether wraps 130° around column 3 at "), "{line}");
+    assert!(line.starts_with("HELD: tether wraps 130° around column 3; robot at "), "{line}");
 }
 
 #[test]

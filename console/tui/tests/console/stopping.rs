@@ -6,7 +6,7 @@ use mission::{Event, EventKind, Gait, Hold, HoldReason, Order, Outcome, ParamVal
 use tui::actions::keymap::{Binding, Keymap};
 use tui::model::ui::{Ask, Edit, Purpose, Shelving};
 use tui::model::{Cause, Overlay, Palette, Pane};
-use tui::{Effect, Key, Model, Msg, RunMsg, Signal, update};
+use tui::{Effect, Key, Model, Msg, RunMsg, Signal, Speed, update};
 
 const HOLD: Effect = Effect::Order(Order::Hold);
 
@@ -381,4 +381,43 @@ fn a_parameter_that_was_sent_does_not_count_as_a_robot_that_may_move() {
     screen.press([Key::Esc]);
     assert_eq!(screen.press([Key::Char(' ')]), []);
     assert_eq!(screen.model.ui.overlay, Overlay::Confirm(Ask::Resume));
+}
+
+#[test]
+fn a_space_holds_until_text_is_typed_in_a_line() {
+    for help in [false, true] {
+        let mut screen = Screen::running();
+        screen.press([Key::Char(if help { '?' } else { ':' })]);
+        let shown = |screen: &mut Screen| text(&drawn(&screen.model, RICH, (120, 36)));
+        assert!(shown(&mut screen).contains("space Ctrl-C HOLD"), "{}", shown(&mut screen));
+        screen.press([Key::Char('x'), Key::Char(' ')]);
+        assert!(
+            matches!(&screen.model.ui.overlay, Overlay::Commands(palette) if palette.line.text() == "x ")
+        );
+        assert!(!screen.model.live.hold_asked && !shown(&mut screen).contains("space Ctrl-C HOLD"));
+        screen.press([Key::Backspace, Key::Backspace]);
+        assert!(screen.press([Key::Char(' ')]).contains(&HOLD));
+        assert_eq!(screen.press([Key::Char(' ')]), [], "HOLD was ordered");
+    }
+    // A robot that stands is not held a second time.
+    let mut screen = Screen::held();
+    screen.press([Key::Char('?')]);
+    assert_eq!(screen.press([Key::Char(' ')]), []);
+}
+
+#[test]
+fn an_automatic_hold_that_only_an_order_ends_slows_a_fast_simulation() {
+    let slowed = |by: HoldReason, resumes| {
+        let mut screen = Screen::running();
+        screen.model.live.speed = Speed::Times(16.0);
+        let held = screen.mission.held_until(by, resumes);
+        let effects = screen.hear(RunMsg::Events(vec![held]));
+        (effects.contains(&Effect::Speed(Speed::default())), screen.model.live.speed == Speed::default())
+    };
+    for by in HoldReason::every("why") {
+        let is_automatic =
+            !matches!(by, HoldReason::Operator | HoldReason::Stepped | HoldReason::PlannerReplaced);
+        assert_eq!(slowed(by.clone(), Resumes::Never), (is_automatic, is_automatic), "{by}");
+        assert_eq!(slowed(by, Resumes::WhenCleared), (false, false), "the mission goes on by itself");
+    }
 }

@@ -37,7 +37,7 @@ fn another_vehicle_is_named_with_its_differences_and_cannot_be_driven() {
     let why = differs[0].clone();
     held_by(&mut screen, LinkSeen { state: LinkState::OtherVehicle, why, ..LinkSeen::default() });
     let line = state(&screen);
-    assert!(line.starts_with("HELD: another vehicle answers at "), "{line}");
+    assert!(line.starts_with("HELD: another vehicle answers; robot at "), "{line}");
     assert!(line.contains("No resume: only a new run drives it."), "{line}");
     assert!(is_active(&screen, &Cause::Vehicle));
     let shown = alarms(&mut screen);

@@ -46,7 +46,7 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::Rescan, "rescan", "Re-scan what a run missed", &[Key::Char('r')], &[On(Screen::Home), On(Screen::Review), On(Screen::Result)]).label("re-scan").args(&[may("run", Kind::Run)]).reaches(Reach::Runs)
         .when(offer::rescan).does(|m| go::begin(m, ActionId::Rescan)),
     action(ActionId::Verify, "verify", "Recompute a run and compare its journal", &[Key::Char('v')], &[On(Screen::Home), On(Screen::Review), On(Screen::Result)]).label("verify").args(&[may("run", Kind::Run)])
-        .when(offer::run).does(|m| go::begin(m, ActionId::Verify)),
+        .when(offer::written_run).does(|m| go::begin(m, ActionId::Verify)),
     action(ActionId::Report, "report", "Write the report of a run", &[Key::Char('w')], &[On(Screen::Home), On(Screen::Review), On(Screen::Result)]).label("report").args(&[may("run", Kind::Run)]).reaches(Reach::Runs)
         .when(offer::run).does(|m| go::begin(m, ActionId::Report)),
     action(ActionId::HandOver, "handover", "Write a page for the next operator", &[], &[Context::Screen]).args(&[must("file", Kind::Text), may("overwrite", Kind::Text)]).reaches(Reach::Runs)

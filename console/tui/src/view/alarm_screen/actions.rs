@@ -35,19 +35,28 @@ pub(super) fn lines(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'sta
     numbered.chain(advice).map(|(row, is_selected)| table::row(look, row, is_selected, columns)).collect()
 }
 
-/// The actions and the advice, each in one line.
-pub(super) fn briefly(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'static>> {
-    let room = columns.saturating_sub(3);
+/// The actions and the advice without a heading, each in one row; rows that are left go to the first sentences that are
+/// longer.
+pub(super) fn briefly(look: &Look, alarm: &Alarm, (columns, most): (usize, usize)) -> Vec<Line<'static>> {
     let steps = remedies::steps(look.model, &alarm.cause);
-    let numbered = steps
-        .iter()
-        .enumerate()
-        .map(|(index, step)| (format!(" {} ", number(look, index)), role(look, step), look.keys(&step.text)));
-    let advice = advice(look, &alarm.cause).into_iter().map(|words| (" · ".to_owned(), Role::Text, words));
-    let row = |(mark, role, words): (String, Role, String)| {
-        look.line([(Role::Key, mark), (role, text::fit(&words, room))])
-    };
-    numbered.chain(advice).map(row).collect()
+    let numbered = steps.iter().enumerate().map(|(index, step)| {
+        rows(&format!(" {}", number(look, index)), role(look, step), &look.keys(&step.text), columns)
+    });
+    let advice = advice(look, &alarm.cause).into_iter();
+    let all: Vec<Vec<Parts>> =
+        numbered.chain(advice.map(|words| rows(" ·", Role::Text, &words, columns))).collect();
+    let mut spare = most.saturating_sub(all.len());
+    let fitted = all.into_iter().flat_map(|mut entry| {
+        let more = entry.len().saturating_sub(1);
+        if more <= spare {
+            spare -= more;
+        } else if let Some((_, words)) = entry.first_mut().and_then(|first| first.last_mut()) {
+            words.push('…');
+            entry.truncate(1);
+        }
+        entry
+    });
+    fitted.map(|row| look.line(row)).collect()
 }
 
 /// The keys that run the actions: `1-3`; `None` if there is only advice.

@@ -217,7 +217,7 @@ fn rules(keys: &Keymap, columns: usize) -> Vec<Row> {
     [
         lists.as_str(),
         "HOLD never asks first; commands marked MOVES or ENDS do.",
-        "In text fields, space types a space; <interrupt>: HOLD.",
+        "<hold>: HOLD; once text is typed, <interrupt>: HOLD.",
         "Alarms: unack: not acknowledged.",
     ]
     .into_iter()

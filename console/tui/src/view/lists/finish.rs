@@ -19,22 +19,34 @@ pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
         (_, Err(why)) | (Some(Err(why)), Ok(())) => (Role::Dim, why.clone()),
     };
     let name = |name: &str| text::column(name, NAME.min(room));
-    let short = |words: &str| text::fit(words, room.saturating_sub(NAME));
-    let rows: Vec<Row> = vec![
-        vec![(Role::Title, name("End here")), (Role::Text, short("The robot stays where it is."))],
-        vec![(Role::Title, name("Drive back")), (role, short(&way))],
-    ];
+    let entry = |title: &str, role: Role, words: &str| -> Vec<Row> {
+        let room = room.saturating_sub(NAME);
+        // Why there is no way back is not said anywhere else on a list whose first entry is selected.
+        let lines = match role {
+            Role::Dim if text::width(words) > room => text::wrap(words, room),
+            _ => vec![text::fit(words, room)],
+        };
+        let front = |line| if line == 0 { name(title) } else { name("") };
+        let lines = lines.into_iter().enumerate();
+        lines.map(|(line, words)| vec![(Role::Title, front(line)), (role, words)]).collect()
+    };
+    let ways =
+        [entry("End here", Role::Text, "The robot stays where it is."), entry("Drive back", role, &way)];
+    let first = ways.iter().take(selected).map(Vec::len).sum();
+    let selected_rows = ways.get(selected).map_or(1, Vec::len);
     let effect = match selected {
         0 => format!("The mission cannot be resumed. {scanned}"),
         _ if can.is_ok() => format!("The robot will move. {way}. The mission ends there; HOLD stops it."),
         _ => format!("Not possible now: {way}."),
     };
-    let keys = look.keys(" <accept>: do it  <cancel>: stay held");
+    let accept = if selected == 0 { "end here" } else { "drive back" };
+    let keys = look.keys(&format!(" <accept>: {accept}  <cancel>: stay held"));
     let below: Vec<Row> = paragraph(Role::Dim, &effect, room).chain([hint(&keys)]).collect();
     List {
         title: "End the mission?".into(),
-        rows,
-        selected,
+        rows: ways.concat(),
+        selected: first,
+        selected_rows,
         needed_below: below.len(),
         below,
         ..List::default()

@@ -10,7 +10,7 @@ use crate::caps::Glyphs;
 use crate::model::{Overlay, Screen, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
-use crate::view::{missed, text};
+use crate::view::{missed, stations, text};
 use account::{Area, Estimate, MissReason};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -45,6 +45,8 @@ pub(super) const RESUMES: &str = "R";
 pub(super) const CORNER: &str = "■";
 /// The mark of the largest wrap of the tether.
 pub(super) const WOUND: &str = "w";
+/// The mark behind the name of a station that the last fix did not use.
+pub(super) const UNUSED: &str = "!";
 /// The smallest wrap that is marked, degrees.
 const WOUND_DEG: f64 = 1.0;
 
@@ -109,8 +111,9 @@ impl Board<'_, '_> {
 
     fn solids(&mut self) {
         let look = self.look;
-        for (index, column) in survey::shown(&look).iter().flat_map(|survey| &survey.columns).enumerate() {
-            self.if_free(column.center, Role::Found, &(index + 1).to_string(), 0);
+        let columns = survey::shown(&look).map_or(&[][..], |survey| survey.columns.as_slice());
+        for (column, number) in columns.iter().zip(look.run.column_numbers()) {
+            self.if_free(column.center, Role::Found, &number.to_string(), 0);
         }
         let obstacles = look.run.about.iter().flat_map(|about| &about.world.obstacles);
         for obstacle in obstacles.filter(|obstacle| !survey::is_mapped(&look, obstacle)) {
@@ -160,7 +163,11 @@ impl Board<'_, '_> {
         let shown = look.model.ui.layers.shows(MapLayer::Stations);
         for station in look.run.about.iter().filter(|_| shown).flat_map(|about| &about.world.stations) {
             let name = if text::width(&station.name) <= NAME { station.name.as_str() } else { "S" };
-            self.beside(station.position, Role::Station, name);
+            if stations::is_unused(&look, station.id) {
+                self.beside(station.position, Role::Warn, &format!("{name}{UNUSED}"));
+            } else {
+                self.beside(station.position, Role::Station, name);
+            }
         }
     }
 
@@ -305,7 +312,7 @@ fn is_named(obstacle: &Obstacle) -> bool {
     obstacle.known && (1..=NAME).contains(&text::width(&obstacle.name))
 }
 
-/// The letters of the figures that have a place: c smallest gap, t longest tether, w largest wrap, p largest pull, e largest error.
+/// The letters of the figures that have a place: c smallest clearance, t longest tether, w largest wrap, p largest pull, e largest error.
 pub(super) fn worst_places(estimate: &Estimate) -> Vec<(&'static str, Point)> {
     let tether = estimate.tether.as_ref();
     let wrapped = tether.filter(|tether| tether.wrap_max.value > 0.0);

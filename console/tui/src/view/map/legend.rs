@@ -122,7 +122,7 @@ pub(super) fn fitting(look: &Look, left_over: &[Entry], (rows, columns): (u16, u
     }
     let shortened = |left_out: usize| {
         let more =
-            Entry { role: Role::Key, mark: look.keys("<help>"), word: format!("{left_out} more").into() };
+            Entry { role: Role::Key, mark: format!("+{left_out}"), word: look.keys("more (<help>)").into() };
         let first = left_over.iter().take(left_over.len() - left_out).cloned();
         first.chain([more]).collect::<Vec<_>>()
     };

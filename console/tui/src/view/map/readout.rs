@@ -73,6 +73,11 @@ fn word(look: &Look, at: Point, (class, times): (FloorClass, u32)) -> String {
         Some(OutOfReach::of(floor.kind(floor.cell_at(at)?))?.plainly())
     };
     match class {
+        FloorClass::Scanned | FloorClass::Again | FloorClass::Partial
+            if let Some(doubt) = shade::why_left(look, at) =>
+        {
+            doubt.into()
+        }
         FloorClass::Outside | FloorClass::ToDo => match live.left_out_area(at) {
             Some(area) => format!("left out: {}", briefest(area)),
             None => "to do".into(),

@@ -2,20 +2,23 @@
 
 use super::shapes::Window;
 use super::survey;
-use crate::model::{Raster, Run, Together, replay::Scans, survey::Survey, ui::MapLayer};
+use crate::model::{Live, Raster, Run, Together, replay::Scans, survey::Survey, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
+use account::InDoubt;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 use std::rc::Rc;
-use world::{FloorClass, Point};
+use world::{CellRun, FloorClass, Point};
 
 /// The shade of a piece of floor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Shade {
     /// The shade of a floor class; never [`FloorClass::ToDo`].
     Floor(FloorClass),
+    /// Scanned floor that lost its guarantee because a station was wrong.
+    InDoubt,
     /// Floor to which the rest of the plan led when the mission ended.
     NotReached,
     /// Floor that the mission did not have to scan, and did not scan.
@@ -59,6 +62,7 @@ impl Shade {
             Self::Floor(FloorClass::Unreachable) => ('/', Role::Unreachable),
             Self::Floor(FloorClass::Margin) => ('-', Role::Margin),
             Self::Floor(FloorClass::Untestable) => ('[', Role::Untestable),
+            Self::InDoubt => ('d', Role::Warn),
             Self::NotReached => ('◦', Role::Dim),
             Self::NotRequested => ('⋅', Role::Dim),
             Self::Before => ('+', Role::Dim),
@@ -103,6 +107,7 @@ impl Shade {
 struct Ground<'a> {
     raster: &'a Raster,
     has_missed: bool,
+    in_doubt: Vec<bool>,
     not_reached: Vec<bool>,
     not_requested: Vec<bool>,
 }
@@ -117,9 +122,16 @@ impl<'a> Ground<'a> {
         Self {
             raster,
             has_missed,
+            in_doubt: Vec::new(),
             not_reached: if_missed(&|| run.not_reached()),
             not_requested: if_missed(&not_requested),
         }
+    }
+
+    /// The floor of the open run with the part of it that is in doubt.
+    fn open(raster: &'a Raster, live: &Live) -> Self {
+        let in_doubt = live.doubtful(raster.floor().len());
+        Self { in_doubt, ..Self::new(raster, &live.run, live.together()) }
     }
 
     /// The shade of the floor in a square around a point. Floor that was missed is divided: the mission did not have to
@@ -131,15 +143,21 @@ impl<'a> Ground<'a> {
         Some(match shade {
             Shade::Floor(FloorClass::Missed) if is_in(&self.not_requested) => Shade::NotRequested,
             Shade::Floor(FloorClass::Missed) if is_in(&self.not_reached) => Shade::NotReached,
+            Shade::Floor(FloorClass::Scanned | FloorClass::Again | FloorClass::Partial)
+                if is_in(&self.in_doubt) =>
+            {
+                Shade::InDoubt
+            }
             shade => shade,
         })
     }
 }
 
-/// Why the floor at a place was left unscanned by the open run, in words; `None` if it was missed.
+/// More about the floor at a place, in words: why the open run left it unscanned, or that its scan is in doubt; `None` if
+/// its class says all.
 pub(super) fn why_left(look: &Look, at: Point) -> Option<&'static str> {
-    let together = look.model.live.together();
-    match Ground::new(look.model.live.scanned()?, look.run, together).shade(at, 0.0)? {
+    match Ground::open(look.model.live.scanned()?, &look.model.live).shade(at, 0.0)? {
+        Shade::InDoubt => Some("scanned, in doubt"),
         Shade::NotRequested => Some("not requested"),
         Shade::NotReached => Some("not reached: mission ended"),
         _ => None,
@@ -192,6 +210,8 @@ pub(crate) struct Key {
     /// The last tick and the length of the plan in points, once the run has missed floor: they tell runs apart that
     /// scanned the same cells.
     ended: Option<(u64, usize)>,
+    /// The number of times that floor lost its guarantee, and of the cells that are in doubt.
+    doubt: (usize, u32),
 }
 
 impl Key {
@@ -199,11 +219,17 @@ impl Key {
         let plan = run.planning.plan.as_ref();
         run.has_missed().then(|| (run.clock.tick, plan.map_or(0, |plan| plan.path.len())))
     }
+
+    fn doubt(in_doubt: &[InDoubt]) -> (usize, u32) {
+        let cells = in_doubt.iter().flat_map(|doubt| &doubt.cells).map(|CellRun(_, count)| count);
+        (in_doubt.len(), cells.sum())
+    }
 }
 
 /// The shades in the order of the legend, the most important first, each with its legend text.
-pub(super) const LEGEND: [(Shade, &str); 19] = [
+pub(super) const LEGEND: [(Shade, &str); 20] = [
     (Shade::Floor(FloorClass::Missed), "missed"),
+    (Shade::InDoubt, "in doubt"),
     (Shade::NotReached, "not reached"),
     (Shade::NotRequested, "not requested"),
     (Shade::PoorFix, "poor fix"),
@@ -315,10 +341,11 @@ fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
         window,
         rows_per_row,
         ended: Key::ended(run),
+        doubt: Key::doubt(&look.model.live.in_doubt),
     };
     look.cache.borrow_mut().shades(key, || {
         let dots = window.dots(rows_per_row);
-        let ground = raster.map(|raster| Ground::new(raster, run, look.model.live.together()));
+        let ground = raster.map(|raster| Ground::open(raster, &look.model.live));
         let floor = |ground: &Ground<'_>, at, edge_m| match survey {
             Some(survey) => survey::shade(survey, at, edge_m).filter(|_| is_floor(ground.raster, at, edge_m)),
             None => ground.shade(at, edge_m),
@@ -361,6 +388,7 @@ pub(in crate::view) fn of_run(
         window,
         rows_per_row,
         ended: Key::ended(run),
+        doubt: Key::doubt(&[]),
     };
     let make = || {
         let ground = Ground::new(raster, run, together);

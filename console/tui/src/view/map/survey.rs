@@ -5,7 +5,7 @@ use super::pen::Pen;
 use super::shade::Shade;
 use super::shapes::Filled;
 use crate::model::survey::{Seen, Survey};
-use crate::model::{Screen, ui::MapLayer};
+use crate::model::{Run, Screen, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
 use crate::view::survey::rest;
@@ -48,10 +48,11 @@ pub(super) fn is_mapped(look: &Look, obstacle: &Obstacle) -> bool {
 }
 
 /// The mark of the columns in the legend: their numbers.
-pub(super) fn numbers(survey: &Survey) -> String {
-    match survey.columns.len() {
-        1 => "1".into(),
-        n @ 2..=9 => format!("1-{n}"),
+pub(super) fn numbers(run: &Run) -> String {
+    let numbers = run.column_numbers();
+    match (numbers.iter().min(), numbers.iter().max()) {
+        (Some(first), Some(last)) if first == last => first.to_string(),
+        (Some(first), Some(last @ ..=9)) => format!("{first}-{last}"),
         _ => "1-n".into(),
     }
 }

@@ -258,7 +258,12 @@ pub(super) fn whereabouts(model: &Model) -> Vec<String> {
         return Vec::new();
     }
     let Some(pose) = run.position.pose else { return Vec::new() };
-    let at = format!(" at {}", text::place(pose.position));
+    // Only some reasons happen at the place of the robot.
+    let is_here = matches!(
+        hold.by,
+        HoldReason::Operator | HoldReason::Stepped | HoldReason::Stuck { .. } | HoldReason::Guard { .. }
+    );
+    let at = format!("{} {}", if is_here { " at" } else { "; robot at" }, text::place(pose.position));
     let done =
         run.progress.as_ref().map(|progress| format!(", {} % done", text::number(100.0 * progress.done, 0)));
     match done {

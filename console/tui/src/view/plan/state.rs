@@ -102,6 +102,8 @@ fn progress(look: &Look) -> (Role, String) {
         }
         (None, Some(plan)) => ready(look, plan.complete),
         (None, None) if look.run.is_survey() => (Role::Text, SURVEY.into()),
+        (None, None) if look.model.live.is_loading() => (Role::Watch, "Loading; the plan follows.".into()),
+        (None, None) if look.model.live.awaits_plan() => (Role::Watch, "The plan follows.".into()),
         (None, None) => (Role::Dim, "No plan.".into()),
     }
 }
@@ -110,11 +112,20 @@ fn progress(look: &Look) -> (Role, String) {
 fn readiness(look: &Look) -> &'static str {
     let is_refused = look.run.tether.as_ref().is_some_and(|tether| tether.certified == Some(false));
     match (*look.run.phase() == Phase::Waiting, is_refused) {
+        (true, true) if is_blocked(look) => "NOT certified, start blocked",
         (true, true) => "Ready, NOT certified",
         (true, false) => "Ready",
         (false, true) => "Started, NOT certified",
         (false, false) => "Started",
     }
+}
+
+/// Whether the missing certificate of the plan blocks the start.
+fn is_blocked(look: &Look) -> bool {
+    let is_refused = look.run.tether.as_ref().is_some_and(|tether| tether.certified == Some(false));
+    let tether = look.run.about.as_ref().and_then(|about| about.mission.tether.as_ref());
+    let waits = *look.run.phase() == Phase::Waiting;
+    waits && is_refused && tether.is_some_and(|tether| !tether.allow_uncertified)
 }
 
 /// The state of a plan for a scan in a short line: its certificate, what it scans, and how many areas it leaves out.
@@ -152,6 +163,9 @@ fn ready(look: &Look, is_complete: bool) -> (Role, String) {
             } else {
                 format!("{state} Scans {scanned} % of the requested floor{areas}.")
             }
+        }
+        None if is_complete && is_blocked(look) => {
+            format!("{state} The plan would achieve the whole task.")
         }
         None if is_complete => format!("{state} The plan achieves the whole task."),
         None => format!("{state} PARTIAL: the plan achieves only part of the task."),

@@ -53,7 +53,12 @@ fn lines(model: &Model, result: &RunResult, columns: usize) -> Vec<Parts> {
         lines.map(|line| vec![(role, format!(" {line}"))]).collect::<Vec<Parts>>()
     };
     let reason = result.summary.reason.as_deref().unwrap_or("cut off");
-    let mut lines = wrapped(role(result), reason);
+    let doubt = doubt(model);
+    let mut lines: Vec<Parts> = doubt.iter().flat_map(|words| wrapped(Role::Warn, words)).collect();
+    lines.extend(wrapped(role(result), reason));
+    if model.ui.parts.without_scan {
+        lines.extend(wrapped(Role::Text, "Not a scanning mission."));
+    }
     lines.extend(requested(model).iter().flat_map(|words| wrapped(Role::Text, words)));
     lines.extend(guaranteed(model, result).iter().flat_map(|words| wrapped(Role::Text, words)));
     for violation in result.summary.violations.iter().flatten() {
@@ -74,6 +79,14 @@ fn lines(model: &Model, result: &RunResult, columns: usize) -> Vec<Parts> {
         ));
     }
     lines
+}
+
+/// The floor in doubt, and how to scan it again; `None` if no floor is in doubt.
+fn doubt(model: &Model) -> Option<String> {
+    let (area_m2, stations) = model.live.doubt()?;
+    let area_m2 = text::number(area_m2, 1);
+    let words = format!("IN DOUBT: {area_m2} m², scanned while {stations} was wrong. <rescan>: re-scan it.");
+    Some(model.console.keys.spelled(&words))
 }
 
 /// The table of the figures with its heading.
@@ -257,7 +270,7 @@ fn level(result: &RunResult) -> Option<String> {
         return Some("Protection level: none; the position was never protected.".to_owned());
     };
     Some(format!(
-        "Protection level: median {}, largest {} m; not protected in {} % of the time.",
+        "Protection level: median {} m, largest {} m; none for {} % of the time.",
         text::number(median_m, 2),
         text::number(max_m, 2),
         text::percent(level.unprotected)

@@ -181,7 +181,7 @@ fn notes(model: &Model, result: &RunResult) -> Vec<String> {
     });
     let plates = model.live.floor().filter(|floor| !floor.plates.is_empty()).map(|floor| {
         let all = floor.plates.iter().filter(|plate| plate.shares.percent.missed <= MISSED_PERCENT).count();
-        format!("Plates: {all} of {} with at most {MISSED_PERCENT} % missed.", floor.plates.len())
+        format!("At most {MISSED_PERCENT} % missed on {all} of {} plates.", floor.plates.len())
     });
     let readings = summary.readings.as_ref().map(|readings| {
         let deepest = readings.deepest.as_ref().map_or_else(String::new, |loss| {

@@ -7,6 +7,7 @@ use super::{Entry, MARK};
 use crate::model::{Screen, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
+use crate::view::stations::is_unused;
 use crate::view::text;
 use world::{Point, ZoneKind};
 
@@ -33,6 +34,12 @@ pub(super) fn shown(look: &Look, window: Window) -> Vec<Entry> {
     let no_go = about.world.zones.iter().any(|zone| zone.kind == ZoneKind::NoGo && seen(zone.shape.center()));
     let station = ui.layers.shows(MapLayer::Stations)
         && about.world.stations.iter().any(|station| seen(station.position));
+    let unused =
+        about.world.stations.iter().find(|at| station && is_unused(look, at.id) && seen(at.position));
+    let unused = unused.map(|station| {
+        let is_short = text::width(&station.name) < MARK;
+        format!("{}{}", if is_short { &station.name } else { "S" }, labels::UNUSED)
+    });
     let target = run.progress.as_ref().is_some_and(|progress| !run.has_ended() && seen(progress.target));
     let wound = labels::wound(look).is_some_and(seen);
     let change_over = course::change_over(look).is_some_and(seen);
@@ -47,7 +54,12 @@ pub(super) fn shown(look: &Look, window: Window) -> Vec<Entry> {
         (numbered > 0, Role::Missed, numbers, "missed area"),
         (no_go, Role::NoGo, hatched, "no-go zone"),
         (frontier, Role::Watch, survey::FRONTIER.into(), "frontier"),
-        (columns.is_some(), Role::Found, columns.map_or_else(String::new, survey::numbers), "column"),
+        (
+            columns.is_some(),
+            Role::Found,
+            columns.map_or_else(String::new, |_| survey::numbers(run)),
+            "column",
+        ),
         (obstacle(false), Role::Found, "?".to_owned(), "found"),
         (obstacle(true), Role::Obstacle, "#".into(), "obstacle"),
         (target, Role::Target, "×".into(), "target"),
@@ -55,6 +67,7 @@ pub(super) fn shown(look: &Look, window: Window) -> Vec<Entry> {
         (wound, Role::Tether, labels::WOUND.into(), "largest wrap"),
         (change_over, Role::Watch, "◇".into(), "change-over"),
         (station, Role::Station, stations(look), "station"),
+        (unused.is_some(), Role::Warn, unused.unwrap_or_default(), "not used"),
         (plates::plates(look, window).is_some(), Role::Plate, outline, "plate"),
     ];
     let marks = marks.into_iter().filter(|(shown, ..)| *shown);
@@ -78,7 +91,7 @@ pub(super) fn places(look: &Look, window: Window) -> Vec<Entry> {
     let seen = places.filter(|(_, at)| window.cell_of(*at).is_some());
     let word = |letter: &str| match letter {
         "t" => "longest tether",
-        "c" => "smallest gap",
+        "c" => "clearance",
         "e" => "AE error",
         "p" => "largest pull",
         _ => "wrap",
