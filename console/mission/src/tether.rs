@@ -11,6 +11,7 @@
 //! obstacles known now.
 
 mod alarms;
+mod beside;
 mod certifying;
 mod driven;
 mod homeward;
@@ -19,6 +20,7 @@ mod slack;
 mod survey;
 mod torn;
 
+pub(crate) use beside::Clearance;
 pub use certifying::certify_from_start;
 pub(crate) use certifying::{ends_at_anchor, return_path_ends};
 
@@ -27,6 +29,7 @@ use crate::{
     event::{EventKind, TetherAlarm, TetherContact},
 };
 use alarms::Alarms;
+use beside::Lying;
 use certifying::certified;
 use driven::Driven;
 use payout::{Explained, Payout};
@@ -63,6 +66,8 @@ pub struct Tether {
     payout: Payout,
     slack: Slack,
     torn: Torn,
+    /// The cable on the floor beside which the robot drives back, or the rest of a torn one.
+    lying: Option<Lying>,
     driven: Driven,
     alarms: Alarms,
 }
@@ -87,6 +92,7 @@ impl Tether {
             payout: Payout::default(),
             slack: Slack::default(),
             torn: Torn::default(),
+            lying: None,
             driven: Driven::new(start),
             alarms: Alarms::default(),
         })
@@ -126,6 +132,7 @@ impl Tether {
     pub fn drag_to(&mut self, here: Point) {
         self.driven.keep(here);
         self.slack.keep(here);
+        self.lying.iter_mut().for_each(|lying| lying.keep(here));
         self.cable.drag_to(here);
         self.drag_hull(here);
     }
@@ -155,6 +162,9 @@ impl Tether {
         let least_m = error_m.map(|error_m| self.cable.length_m() - error_m);
         self.torn.take(readings, least_m, self.config.reel.as_ref(), passed_s);
         if self.torn().is_some() {
+            if self.lying.is_none() {
+                self.leave_lying();
+            }
             // What is left of the cable is neither slack nor caught.
             (self.payout, self.slack) = (Payout::default(), Slack::default());
             self.payout.take(readings.paid_out_m, None, self.config.limits.reel_length_m, passed_s);

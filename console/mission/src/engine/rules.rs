@@ -90,7 +90,8 @@ impl Rules {
             .update(seen)
             .or_else(|| ZoneRule::update(seen))
             .or_else(|| seen.is_back.then_some(Verdict::Back))
-            .or_else(|| tether.reached(seen).map(by_tether))
+            .or_else(|| tether.reached_beside(seen).map(by_tether))
+            .or_else(|| Some(hold(HoldReason::Tether { message: seen.beside?.trouble()? })))
             .or_else(|| stuck.update_return(seen))
     }
 

@@ -241,7 +241,8 @@ fn shadows_plan(model: &Model, shadow: &Shadow) -> String {
 /// The length and clearance of a way back: `To the anchor, 5.5 m, clearance 0.12 m`.
 pub(super) fn finish_way(way: &WayBack) -> String {
     let (length, clearance) = (text::number(way.length_m, 1), text::number(way.clearance_m, 2));
-    format!("To the {}, {length} m, clearance {clearance} m", way.to.word())
+    let beside = if way.slack_m.is_some() { ", slowly beside the tether on the floor" } else { "" };
+    format!("To the {}, {length} m, clearance {clearance} m{beside}", way.to.word())
 }
 
 /// Where the robot must stand before a re-scan, as a sentence; `None` if it was left there.

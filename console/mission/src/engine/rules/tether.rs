@@ -45,6 +45,15 @@ impl TetherRule {
         (!is_old).then_some(alarm)
     }
 
+    /// The same for a robot that drives back. Slack that was known when the order was given does not count again, nor does a
+    /// return path along a cable beside which the robot drives.
+    pub(crate) fn reached_beside<'a>(&mut self, seen: &Seen<'a>) -> Option<&'a TetherAlarm> {
+        let is_known = |alarm: &TetherAlarm| {
+            matches!(alarm, TetherAlarm::Slack { .. } | TetherAlarm::Snag { .. } | TetherAlarm::NoReturnPath)
+        };
+        self.reached(seen).filter(|alarm| seen.beside.is_none() || !is_known(alarm))
+    }
+
     /// Processes one tick of a running robot.
     pub(crate) fn update(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
         let alarm = self.reached(seen)?;
