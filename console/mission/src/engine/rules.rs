@@ -100,8 +100,11 @@ impl Rules {
         // A hold by the operator gets the reason that needs a remedy.
         let yields =
             !hold.resumes.is_never() || matches!(hold.by, HoldReason::Operator | HoldReason::Stepped);
-        if let Some(breach) = ZoneRule::update(seen).filter(|_| yields) {
-            return Some(breach);
+        if yields {
+            let torn = || Some(Verdict::Hold(self.tether.found_torn(seen)?));
+            if let Some(reason) = ZoneRule::update(seen).or_else(torn) {
+                return Some(reason);
+            }
         }
         if hold.resumes != Resumes::WhenCleared {
             return None;

@@ -37,9 +37,8 @@ impl Known {
     /// The robot does not fit beside the tether; the remedies.
     fn way_beside(&self, tether: &Tether) -> Result<Vec<Point>, String> {
         let fenced = fenced(self.chart.world());
-        let beside = |room_m: f64| {
-            tether.way_beside(&fenced, room_m).filter(|way| self.is_free_from_here(way))
-        };
+        let beside =
+            |room_m: f64| tether.way_beside(&fenced, room_m).filter(|way| self.is_free_from_here(way));
         self.widest(beside).ok_or_else(|| {
             let cause = if tether.torn().is_some() {
                 "the tether is broken and lies on the floor"

@@ -254,14 +254,37 @@ fn a_torn_cable_holds_the_robot_once_and_an_operator_may_go_on() {
 }
 
 #[test]
-fn a_cable_that_tears_while_the_robot_is_held_holds_it_again_when_it_moves() {
+fn a_cable_that_tears_while_the_robot_is_held_becomes_the_reason_and_one_resume_suffices() {
     let mut flight = torn(tethered(20.0));
     flight.tick(&[Order::Hold]);
     go_on(&mut flight, 50);
-    assert_eq!((breaks(&flight), flight.held_by()), (1, Some(&HoldReason::Operator)));
-    flight.tick(&[Order::Resume]);
-    go_on(&mut flight, 5);
     assert!(matches!(flight.held_by(), Some(HoldReason::Tether { message }) if message.contains("broken")));
+    assert_eq!(breaks(&flight), 1);
+    flight.tick(&[Order::Resume]);
+    go_on(&mut flight, 300);
+    assert_eq!((breaks(&flight), flight.ended()), (1, Some(Outcome::Complete)));
+}
+
+/// A vehicle without a sensor of the pull.
+fn vehicle(caught_m: impl Fn(f64) -> f64) -> Flight {
+    let mut flight = Flight::new(MissionConfig { live: true, ..tethered(20.0) });
+    flight.reel = cable(Point::new(-3.0, 0.0), &[]);
+    flight.tick(&[Order::Start]);
+    flight.fly(60);
+    for _ in 0..80 {
+        flight.caught_m = caught_m(flight.reel.as_ref().unwrap().length_m());
+        flight.tick(&[]);
+    }
+    flight
+}
+
+#[test]
+fn the_encoder_alone_shows_that_the_cable_of_a_vehicle_is_torn_or_caught_or_slack() {
+    let is_held = |flight: &Flight, word: &str| matches!(flight.held_by(), Some(HoldReason::Tether { message }) if message.contains(word));
+    let torn = vehicle(|taut_m| -taut_m);
+    assert!(breaks(&torn) == 1 && is_held(&torn, "or the encoder of the reel is wrong"));
+    let more = vehicle(|_| 1.5);
+    assert!(is_held(&more, "snagged on an unmapped object, or slack"), "{:?}", more.mission.phase());
 }
 
 #[test]
