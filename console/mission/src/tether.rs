@@ -15,6 +15,7 @@ mod beside;
 mod certifying;
 mod driven;
 mod homeward;
+mod laid;
 mod payout;
 mod slack;
 mod survey;
@@ -32,6 +33,7 @@ use alarms::Alarms;
 use beside::Lying;
 use certifying::certified;
 use driven::Driven;
+use laid::Laid;
 use payout::{Explained, Payout};
 use planner_api::Plan;
 use slack::Slack;
@@ -70,6 +72,8 @@ pub struct Tether {
     is_live: bool,
     /// The cable on the floor beside which the robot drives back, or the rest of a torn one.
     lying: Option<Lying>,
+    /// Where the cable lies; `None` until its length off the reel and its pull have been measured.
+    laid: Option<Laid>,
     driven: Driven,
     alarms: Alarms,
 }
@@ -96,6 +100,7 @@ impl Tether {
             torn: Torn::default(),
             is_live: false,
             lying: None,
+            laid: None,
             driven: Driven::new(start),
             alarms: Alarms::default(),
         })
@@ -141,7 +146,6 @@ impl Tether {
     pub fn drag_to(&mut self, here: Point) {
         self.driven.keep(here);
         self.slack.keep(here);
-        self.lying.iter_mut().for_each(|lying| lying.keep(here));
         self.cable.drag_to(here);
         self.drag_hull(here);
     }
@@ -167,7 +171,8 @@ impl Tether {
 
     /// Records the measured length paid out and the pull, and the time that has passed since the last call, seconds.
     /// `error_m` is the position error with which the cable was laid, metres; `None` while the position is lost.
-    pub fn measure(&mut self, readings: &Readings, error_m: Option<f64>, passed_s: f64) {
+    pub fn measure(&mut self, readings: &Readings, error_m: Option<f64>, world: &World, passed_s: f64) {
+        self.lay(readings, error_m.is_some(), world);
         let straight_m = (self.cable.tip() - self.config.anchor).norm();
         let least = error_m.map(|error_m| Least {
             taut_m: self.cable.length_m() - error_m,

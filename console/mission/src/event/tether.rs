@@ -134,7 +134,7 @@ impl fmt::Display for TetherAlarm {
             }
             Self::Snag { paid_out_m, explained_m, or_slack } => {
                 let what = if *or_slack {
-                    "tether snagged on an unmapped object, or slack"
+                    "tether snagged or slack"
                 } else {
                     "tether snagged on an unmapped object"
                 };

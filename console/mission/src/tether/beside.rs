@@ -1,15 +1,14 @@
 //! The way home beside a cable that lies on the floor, because its reel does not take it up or because it is torn.
 //!
 //! The console knows the length off the reel, the pull, the map and the path driven. From these it follows where the cable
-//! lies: along the taut line to the place where it last pulled, and from there along the path driven since, because a cable
-//! without pull stays where the robot laid it. On a way beside this line, the cable folds behind the robot. The way ends
-//! beside the anchor: the cable begins there, so the hull would stand on it.
+//! lies (`laid`). On a way beside it, the cable folds behind the robot. The way ends beside the anchor: the cable begins
+//! there, so the hull would stand on it.
 
-use super::Tether;
+use super::{Laid, Tether};
 use crate::event::SLACK_M;
 use geometry::{Vector, polyline, unit_vector};
 use std::f64::consts::TAU;
-use world::{Point, Shape, World, shortest::GrownFloor};
+use world::{Point, Readings, Shape, World, shortest::GrownFloor};
 
 /// Distances between the edge of the hull and the line of the cable that are tried, in this order, metres. A cable that was
 /// dragged sideways lags behind the taut line.
@@ -30,13 +29,9 @@ const ROUND_M: f64 = 0.1;
 /// Maximum number of times that a search for a path may ask whether to go on.
 const MOST_STEPS: usize = 50_000;
 
-/// A cable that lies on the floor.
-#[derive(Debug, Clone, PartialEq)]
+/// The order to drive beside a cable that lies on the floor, or the rest of a torn one.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Lying {
-    /// Where it lies, from the anchor to the place where the robot drew it last, and from there along the path driven.
-    line: Vec<Point>,
-    /// The part of it that was not taut at the last order, metres, measured from the anchor.
-    still_m: f64,
     /// Length off the reel at the order, metres; `None` if the cable is torn.
     out_m: Option<f64>,
 }
@@ -84,7 +79,7 @@ impl Tether {
     pub fn way_beside(&self, world: &World, room_m: f64) -> Option<Vec<Point>> {
         let tauten = self.little_slack().unwrap_or_default();
         let start = tauten.last().copied().unwrap_or_else(|| self.cable.tip());
-        let line = self.lies_along();
+        let line = self.lies_along(world);
         let from_start = GAPS_M.into_iter().find_map(|gap_m| {
             let by_m = self.hull_m + gap_m;
             // Closer than this, the cable leads away from the robot on every way.
@@ -150,26 +145,27 @@ impl Tether {
     }
 
     /// Where the cable lies when the robot begins to drive beside it, from the anchor to the robot.
-    fn lies_along(&self) -> Vec<Point> {
-        if let Some(lying) = &self.lying {
-            return lying.line.clone();
+    fn lies_along(&self, world: &World) -> Vec<Point> {
+        let Some(mut laid) = self.laid.clone() else { return self.cable.taut_line() };
+        if let (Some(way), Some(out_m)) = (self.little_slack(), self.payout.measured_m()) {
+            way.iter().for_each(|at| laid.step(*at, out_m, world));
         }
-        let Some(way) = self.way_to_tauten() else { return self.cable.taut_line() };
-        let mut taut = self.cable.clone();
-        taut.drag_along(&way);
-        let mut line = taut.taut_line();
-        if self.little_slack().is_none() {
-            line.extend(way.iter().rev());
-        }
-        line
+        laid.line()
+    }
+
+    /// Records where the cable lies. A torn cable stays as it was last, except where the robot draws it.
+    pub(super) fn lay(&mut self, readings: &Readings, is_located: bool, world: &World) {
+        let is_felt = readings.robot_pull_n.or(readings.reel_pull_n).is_some();
+        let out_m = readings.paid_out_m.filter(|out_m| out_m.is_finite() && is_felt && is_located);
+        let Some(out_m) = out_m else { return };
+        let laid = self.laid.get_or_insert_with(|| Laid::along(&self.cable));
+        let out_m = if self.torn.found().is_some() { laid.length_m() } else { out_m };
+        laid.step(self.cable.tip(), out_m, world);
     }
 
     /// Notes that the robot begins to drive beside a cable that lies on the floor.
     pub(crate) fn leave_lying(&mut self) {
-        let line = self.lies_along();
-        let still_m = (polyline::length_m(&line) - 3.0 * self.hull_m - GAPS_M[0]).max(0.0);
-        let out_m = self.payout.measured_m().filter(|_| self.torn().is_none());
-        self.lying = Some(Lying { line, still_m, out_m });
+        self.lying = Some(Lying { out_m: self.payout.measured_m().filter(|_| self.torn().is_none()) });
     }
 
     /// Notes that the robot takes up its task again: the rules for a cable that is not torn apply again.
@@ -197,18 +193,10 @@ impl Tether {
         if let Some((known_m, out_m)) = drawn {
             return Some(Clearance::DrawnOut { out_m, known_m });
         }
-        let still = upto(&lying.line, lying.still_m);
-        let is_near = still.len() > 1 && polyline::distance_m(&still, self.cable.tip()) < self.hull_m;
+        let still =
+            self.laid.as_ref().map_or(&[][..], |laid| laid.without_end(3.0 * self.hull_m + GAPS_M[0]));
+        let is_near = still.len() > 1 && polyline::distance_m(still, self.cable.tip()) < self.hull_m;
         Some(if is_near { Clearance::InTheWay } else { Clearance::Free })
-    }
-}
-
-impl Lying {
-    /// Records the robot's position.
-    pub(super) fn keep(&mut self, here: Point) {
-        if self.line.last().is_none_or(|last| (here - last).norm() >= super::driven::KEPT_M) {
-            self.line.push(here);
-        }
     }
 }
 

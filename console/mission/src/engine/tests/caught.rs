@@ -284,7 +284,7 @@ fn the_encoder_alone_shows_that_the_cable_of_a_vehicle_is_torn_or_caught_or_slac
     let torn = vehicle(|taut_m| -taut_m);
     assert!(breaks(&torn) == 1 && is_held(&torn, "or the encoder of the reel is wrong"));
     let more = vehicle(|_| 1.5);
-    assert!(is_held(&more, "snagged on an unmapped object, or slack"), "{:?}", more.mission.phase());
+    assert!(is_held(&more, "tether snagged or slack: "), "{:?}", more.mission.phase());
 }
 
 #[test]

@@ -174,7 +174,7 @@ impl<'a> Run<'a> {
             ..Readings::default()
         };
         self.rules.drag_to(at);
-        self.rules.measure(&readings, Some(ERROR_M), TICK_S);
+        self.rules.measure(&readings, Some(ERROR_M), self.world, TICK_S);
         self.raised.clear();
         for event in self.rules.update(self.world, &self.map, TICK_S) {
             match event {
