@@ -148,7 +148,9 @@ impl Tether {
     fn lies_along(&self, world: &World) -> Vec<Point> {
         let Some(mut laid) = self.laid.clone() else { return self.cable.taut_line() };
         if let (Some(way), Some(out_m)) = (self.little_slack(), self.payout.measured_m()) {
-            way.iter().for_each(|at| laid.step(*at, out_m, world));
+            for at in &way {
+                laid.step(*at, out_m, world);
+            }
         }
         laid.line()
     }
