@@ -27,6 +27,9 @@ mod command_line;
 #[path = "acceptance/connecting.rs"]
 mod connecting;
 #[cfg(unix)]
+#[path = "acceptance/dead_reel.rs"]
+mod dead_reel;
+#[cfg(unix)]
 #[path = "acceptance/engines.rs"]
 mod engines;
 #[path = "acceptance/faults.rs"]

@@ -109,7 +109,7 @@ impl Fold {
                 if let Some(tethered) = &mut self.tethered {
                     tethered.lie(*length_m, *wrap_max_rad, *wrap_total_rad, *detour_m);
                     if let Some(lies) = lies {
-                        tethered.cross(lies.under_hull);
+                        tethered.cross(lies.torn, lies.under_hull);
                     }
                 }
             }

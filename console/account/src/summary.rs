@@ -324,6 +324,9 @@ pub struct Tether {
     /// Mission time at which the mission found the tether broken, seconds; absent for a whole tether.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub broken_at_s: Option<f64>,
+    /// Whether the simulated tether was torn when the run ended, whether or not the mission had found it broken.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub torn_at_end: bool,
 }
 
 /// Response times of the planners.

@@ -21,6 +21,7 @@ pub(crate) struct Tethered {
     over_own: Option<u64>,
     is_over_own: bool,
     broken_at_s: Option<f64>,
+    is_torn: bool,
 }
 
 impl Tethered {
@@ -35,6 +36,7 @@ impl Tethered {
             over_own: None,
             is_over_own: false,
             broken_at_s: None,
+            is_torn: false,
         }
     }
 
@@ -55,11 +57,13 @@ impl Tethered {
             snagged: false,
             over_own: None,
             broken_at_s: None,
+            torn_at_end: false,
         });
     }
 
-    /// Records whether the hull is over its own cable, of a cable that can be slack.
-    pub(crate) fn cross(&mut self, is_over_own: bool) {
+    /// Records whether a cable that can be slack is truly torn, and whether the hull is over it.
+    pub(crate) fn cross(&mut self, is_torn: bool, is_over_own: bool) {
+        self.is_torn = is_torn;
         let times = self.over_own.get_or_insert(0);
         *times += u64::from(is_over_own && !self.is_over_own);
         self.is_over_own = is_over_own;
@@ -80,8 +84,16 @@ impl Tethered {
     pub(crate) fn tether(&self, robot: Option<Point>, outcome: Option<Outcome>) -> Option<Tether> {
         let is_back = robot.is_some_and(|robot| (robot - self.anchor).norm() <= BACK_M);
         let entangled = outcome == Some(Outcome::Entangled) || (is_back && self.detour_m > LEFT_M);
-        let &Self { snags, snagged, over_own, broken_at_s, .. } = self;
-        self.known.map(|known| Tether { entangled, snags, snagged, over_own, broken_at_s, ..known })
+        let &Self { snags, snagged, over_own, broken_at_s, is_torn: torn_at_end, .. } = self;
+        self.known.map(|known| Tether {
+            entangled,
+            snags,
+            snagged,
+            over_own,
+            broken_at_s,
+            torn_at_end,
+            ..known
+        })
     }
 }
 
@@ -115,9 +127,12 @@ mod tests {
         assert_eq!(snags(&tethered), Some((2, true)));
         assert_eq!(tethered.tether(None, None).unwrap().over_own, None);
         for is_over_own in [false, true, true, false, true] {
-            tethered.cross(is_over_own);
+            tethered.cross(false, is_over_own);
         }
         assert_eq!(tethered.tether(None, None).unwrap().over_own, Some(2));
+        assert!(!tethered.tether(None, None).unwrap().torn_at_end);
+        tethered.cross(true, false);
+        assert!(tethered.tether(None, None).unwrap().torn_at_end, "whether or not the mission knows it");
         for t_s in [7.0, 9.0] {
             tethered.tear(t_s);
         }

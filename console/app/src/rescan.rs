@@ -36,10 +36,16 @@ pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<
             return Ok(ExitCode::from(ENDED_OTHERWISE));
         }
     };
-    let MissedScan { missed, text, scenario } = scan;
+    let MissedScan { missed, text, scenario, left_out } = scan;
     let (text, changed) = flyable(text, &scenario, output, plugins)?;
     write_file("the scenario", output, &text)?;
     say(&format!("{}: {}", output.display(), missed.human(min_area_m2)))?;
+    if !left_out.is_empty() {
+        say_line(&format!(
+            "left out, because these faults happened in the old run: {}",
+            left_out.join(", ")
+        ))?;
+    }
     if let Some(note) = changed {
         say_line(&note)?;
     }

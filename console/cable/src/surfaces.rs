@@ -15,8 +15,8 @@ const CABLE_M: f64 = 0.01;
 /// of it.
 const FACE_SHARE: f64 = 0.7;
 const THIN_SHARE: f64 = 0.6;
-/// Radius of a rounded corner, in links. A node then turns the cable by at most 50 degrees; with a friction of 0.5, the pull
-/// grows by 4 % more than round a smooth curve. With 0.8 links, cables stuck on columns 8 cm thick.
+/// Radius of a rounded corner, in links. A node then turns the cable by at most 50 degrees. With 0.8 links, cables stuck on
+/// columns 8 cm thick.
 const ROUND_LINKS: f64 = 1.2;
 
 /// The wall and the obstacles.

@@ -75,6 +75,31 @@ fn round_a_column_the_pull_grows_by_the_capstan_equation() {
     }
 }
 
+/// The corners of a square column, and of one that is turned: a node turns the cable there by up to 50 degrees.
+#[test]
+fn round_the_corners_of_a_polygon_the_pull_grows_by_the_capstan_equation() {
+    for (friction, turned_rad) in [(0.3, 0.0), (1.0, 0.0), (1.0, 0.4)] {
+        let corner =
+            |k: u32| Point::origin() + unit_vector(turned_rad + PI / 4.0 + f64::from(k) * PI / 2.0) * 0.5;
+        let shape = Shape::Polygon { vertices: (0..4).map(corner).collect() };
+        let square = Obstacle { id: ObstacleId(1), name: "C1".into(), shape: shape.clone(), known: true };
+        let light = Law { floor_n_per_m: 1e-3, friction, pay_out_n: 2.0, pull_n: 0.0, ..law(0.0) };
+        let robot = Point::new(0.6, 5.0);
+        let anchor = Point::new(-5.0, -0.6);
+        let mut taut = tether::Cable::new(anchor, &WALL, &[shape]).unwrap();
+        taut.drag_along(&[Point::new(0.6, -0.6), robot]);
+        let mut chain = Chain::along(&taut.taut_line(), light).unwrap();
+        let mut pulls_n = Vec::new();
+        let out = [robot, robot + unit_vector(PI / 2.0) * 3.0];
+        drive(&mut chain, &surfaces(&[square]), &out, |chain| pulls_n.push(chain.pull_at_robot_n()));
+        let theory = (friction * taut.wrap_total_rad()).exp();
+        let ratios = || pulls_n[25..].iter().map(|pull_n| pull_n / 2.0 / theory);
+        let mean = ratios().sum::<f64>() / (pulls_n.len() - 25) as f64;
+        assert!((mean - 1.0).abs() < 0.06, "friction {friction}: mean {mean} of theory");
+        assert!(ratios().all(|ratio| (0.8..1.08).contains(&ratio)), "friction {friction}: {pulls_n:?}");
+    }
+}
+
 /// Excess of a cable after its robot has driven across it, metres.
 fn excess_across_m(pull_n: f64) -> f64 {
     let mut chain = straight(15.0, law(pull_n));

@@ -41,6 +41,7 @@ use crate::{
     order::Order,
     phase::{Gait, HoldReason, Phase},
     standing::Standing,
+    tether::Tether,
 };
 pub use driving::Sending;
 use driving::{Driving, LeftPlan, Prepare};
@@ -243,6 +244,7 @@ impl Mission {
             scanned: self.known.floor.coverage.fraction_reachable(),
             touched: readings.contact,
             reached,
+            beside: self.known.tether.as_ref().filter(|_| back.is_some()).and_then(Tether::beside_lying),
             can_replan: self.known.plans_ways_home(),
             can_go_home: self.can_go_home(),
             planner: self.driving.seen(&self.known, self.robot_waits()),

@@ -11,14 +11,17 @@
 //! obstacles known now.
 
 mod alarms;
+mod beside;
 mod certifying;
 mod driven;
 mod homeward;
+mod laid;
 mod payout;
 mod slack;
 mod survey;
 mod torn;
 
+pub(crate) use beside::Clearance;
 pub use certifying::certify_from_start;
 pub(crate) use certifying::{ends_at_anchor, return_path_ends};
 
@@ -27,13 +30,15 @@ use crate::{
     event::{EventKind, TetherAlarm, TetherContact},
 };
 use alarms::Alarms;
+use beside::Lying;
 use certifying::certified;
 use driven::Driven;
+use laid::Laid;
 use payout::{Explained, Payout};
 use planner_api::Plan;
 use slack::Slack;
 use std::sync::Arc;
-use torn::Torn;
+use torn::{Found, Least, Torn};
 use world::{
     ObstacleMap, Point, Readings, Shape, World,
     tether::{Bearing, Cable, CableObstacles, Certificate, TetherError, capstan_factor},
@@ -63,6 +68,12 @@ pub struct Tether {
     payout: Payout,
     slack: Slack,
     torn: Torn,
+    /// Whether a vehicle drags the cable: a vehicle without a sensor of the pull is judged by its encoder alone.
+    is_live: bool,
+    /// The cable on the floor beside which the robot drives back, or the rest of a torn one.
+    lying: Option<Lying>,
+    /// Where the cable lies; `None` until its length off the reel and its pull have been measured.
+    laid: Option<Laid>,
     driven: Driven,
     alarms: Alarms,
 }
@@ -87,9 +98,18 @@ impl Tether {
             payout: Payout::default(),
             slack: Slack::default(),
             torn: Torn::default(),
+            is_live: false,
+            lying: None,
+            laid: None,
             driven: Driven::new(start),
             alarms: Alarms::default(),
         })
+    }
+
+    /// The same cable, dragged by a vehicle if `is_live`.
+    #[must_use]
+    pub(crate) fn live(self, is_live: bool) -> Self {
+        Self { is_live, ..self }
     }
 
     /// Whether plans that cannot be certified may be run.
@@ -151,10 +171,18 @@ impl Tether {
 
     /// Records the measured length paid out and the pull, and the time that has passed since the last call, seconds.
     /// `error_m` is the position error with which the cable was laid, metres; `None` while the position is lost.
-    pub fn measure(&mut self, readings: &Readings, error_m: Option<f64>, passed_s: f64) {
-        let least_m = error_m.map(|error_m| self.cable.length_m() - error_m);
-        self.torn.take(readings, least_m, self.config.reel.as_ref(), passed_s);
+    pub fn measure(&mut self, readings: &Readings, error_m: Option<f64>, world: &World, passed_s: f64) {
+        self.lay(readings, error_m.is_some(), world);
+        let straight_m = (self.cable.tip() - self.config.anchor).norm();
+        let least = error_m.map(|error_m| Least {
+            taut_m: self.cable.length_m() - error_m,
+            straight_m: self.is_live.then_some(straight_m - error_m),
+        });
+        self.torn.take(readings, least, self.config.reel.as_ref(), passed_s);
         if self.torn().is_some() {
+            if self.lying.is_none() {
+                self.leave_lying();
+            }
             // What is left of the cable is neither slack nor caught.
             (self.payout, self.slack) = (Payout::default(), Slack::default());
             self.payout.take(readings.paid_out_m, None, self.config.limits.reel_length_m, passed_s);
@@ -182,8 +210,8 @@ impl Tether {
 
     /// The alarm of a torn cable; `None` for a whole one. A torn cable stays torn for the rest of the mission.
     pub(crate) fn torn(&self) -> Option<TetherAlarm> {
-        let (paid_out_m, needed_m) = self.torn.found_m()?;
-        Some(TetherAlarm::Broken { paid_out_m, needed_m })
+        let Found { out_m, needed_m, by_encoder_alone } = self.torn.found()?;
+        Some(TetherAlarm::Broken { paid_out_m: out_m, needed_m, by_encoder_alone })
     }
 
     /// The path from the robot to the anchor that frees a caught cable and reels it in. It first goes back along the path
@@ -208,7 +236,8 @@ impl Tether {
     /// Updates the cable after some time has passed; returns events for the alarms that were raised or cleared.
     pub fn update(&mut self, world: &World, map: &ObstacleMap, passed_s: f64) -> Vec<EventKind> {
         let return_length_m = self.home(map).map(|way| world::polyline::length_m(&way));
-        self.without_home_s = if return_length_m.is_some() { 0.0 } else { self.without_home_s + passed_s };
+        let has_home = return_length_m.is_some() || self.torn().is_some();
+        self.without_home_s = if has_home { 0.0 } else { self.without_home_s + passed_s };
         let limits = self.config.limits;
         let length_m = self.cable.length_m();
         let wrap_total_rad = self.cable.wrap_total_rad();
@@ -246,18 +275,21 @@ impl Tether {
         let (out_m, reel_length_m) = (self.payout.at_least_m(explained_m), limits.reel_length_m);
         let (wrap_rad, sum_rad) = (self.cable.wrap_max_rad(), self.cable.wrap_total_rad());
         let (wrap_limit_rad, sum_limit_rad) = (limits.wrap_max_rad, limits.wrap_total_max_rad);
-        // Like a snag, a torn cable has no intermediate levels.
-        let torn = self.torn().map(|alarm| (alarm, 2.0));
-        let alarms = [
+        let or_slack = self.is_live && self.slack.measured().is_none();
+        let snag = TetherAlarm::Snag { paid_out_m: out_m, explained_m, or_slack };
+        if let Some(torn) = self.torn() {
+            // Like a snag, a torn cable has no intermediate levels; the limits apply to a cable that leads to the robot.
+            return vec![(torn, 2.0), (snag, 0.0), self.slack.alarm()];
+        }
+        vec![
             (TetherAlarm::Reel { out_m, reel_length_m }, out_m / reel_length_m),
             (TetherAlarm::Wrap { on, wrap_rad, limit_rad: wrap_limit_rad }, wrap_rad / wrap_limit_rad),
             (TetherAlarm::WrapTotal { sum_rad, limit_rad: sum_limit_rad }, sum_rad / sum_limit_rad),
             (TetherAlarm::NoReturnPath, self.without_home_s / NO_HOME_S),
             // A snag has no intermediate levels.
-            (TetherAlarm::Snag { paid_out_m: out_m, explained_m }, if self.is_snagged() { 2.0 } else { 0.0 }),
+            (snag, if self.is_snagged() { 2.0 } else { 0.0 }),
             self.slack.alarm(),
-        ];
-        torn.into_iter().chain(alarms).collect()
+        ]
     }
 
     fn contacts(&self, world: &World) -> Vec<TetherContact> {

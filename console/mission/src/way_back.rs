@@ -22,9 +22,18 @@ impl Home {
             Self::Start => "start",
         }
     }
+
+    /// The place in sentences, with its preposition.
+    pub(crate) fn at(self) -> &'static str {
+        match self {
+            Self::Anchor => "at the anchor",
+            Self::Start => "at the start",
+        }
+    }
 }
 
-/// A way back: along the return path of the taut cable or, without a tether, along the shortest path.
+/// A way back: along the return path of the taut cable, beside a cable that lies on the floor or, without a tether, along
+/// the shortest path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WayBack {
     /// Where the way ends.
@@ -35,11 +44,19 @@ pub struct WayBack {
     pub length_m: f64,
     /// Smallest distance along the path from the hull to anything solid on the chart, metres.
     pub clearance_m: f64,
+    /// Tether beyond the taut line that lies on the floor, metres, if the way leads beside it because the reel does not take
+    /// it up; otherwise `None`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub slack_m: Option<f64>,
 }
 
 impl fmt::Display for WayBack {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { to, length_m, clearance_m, .. } = self;
-        write!(f, "driving back to the {}: {length_m:.1} m, clearance {clearance_m:.2} m", to.word())
+        write!(f, "driving back to the {}: {length_m:.1} m, clearance {clearance_m:.2} m", to.word())?;
+        match self.slack_m {
+            Some(slack_m) => write!(f, ", slowly beside the tether on the floor ({slack_m:.1} m slack)"),
+            None => Ok(()),
+        }
     }
 }

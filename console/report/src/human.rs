@@ -317,8 +317,12 @@ fn tether(tether: &Tether) -> String {
         None | Some(0) => String::new(),
         Some(n) => format!(", drove over its own tether {}", counted(n, "time")),
     };
+    let torn = match tether {
+        Tether { torn_at_end: true, broken_at_s: None, .. } => ", truly torn when the run ended",
+        _ => "",
+    };
     format!(
-        "{state}, {:.1} m out at the end, {:.1} m maximum, largest wrap {:.0}°, {}{snags}{over_own}",
+        "{state}{torn}, {:.1} m out at the end, {:.1} m maximum, largest wrap {:.0}°, {}{snags}{over_own}",
         tether.end_length_m,
         tether.tether_length_max_m,
         tether.wrap_max_rad.to_degrees(),

@@ -31,6 +31,8 @@ pub struct MissedScan {
     pub text: String,
     /// The scenario, read from that text.
     pub scenario: Scenario,
+    /// The keys of the run's scenario that describe faults of that run and are left out.
+    pub left_out: Vec<String>,
 }
 
 /// Builds the scenario that re-scans floor missed by past runs.
@@ -53,7 +55,8 @@ pub fn missed_scan(past: Vec<Past>, min_area_m2: f64, shown_name: &str) -> anyho
     let text = scenario::rescan(last, &runs, &missed.boxes, &missed.found, &drawn);
     let text = text.context("reading the new scenario")?;
     let scenario = Scenario::parse(&text, shown_name).map_err(|errors| bad_input(errors.render()))?;
-    Ok(NextScan::Worth(Box::new(MissedScan { missed, text, scenario })))
+    let left_out = scenario::left_out_of_rescan(&last.scenario_toml);
+    Ok(NextScan::Worth(Box::new(MissedScan { missed, text, scenario, left_out })))
 }
 
 /// The run in the form in which the scenario of its re-scan names it.

@@ -36,7 +36,7 @@ mod wear;
 pub use inspection::inspection;
 pub use of_map::cover_of_map;
 pub use problem::{Complaint, Problem, ScenarioErrors};
-pub use rescan::{Continued, rescan};
+pub use rescan::{Continued, left_out_of_rescan, rescan};
 pub use settings::Settings;
 pub use vehicle::VehicleNeeds;
 

@@ -15,9 +15,22 @@ pub struct Continued<'a> {
     pub journal_sha256: &'a str,
 }
 
+/// Faults of the simulated tether that happened in one run, and are not planned for its re-scan.
+const FAULTS: [&str; 3] = ["reel_fails_at_s", "breaks_at_s", "breaks_at_n"];
+
+/// The keys of the scenario of a past run that its re-scan leaves out because they describe faults of that run, with their
+/// section: `tether.breaks_at_s`.
+pub fn left_out_of_rescan(scenario_toml: &str) -> Vec<String> {
+    let Ok(document) = foreign::plain_lines(scenario_toml).parse::<DocumentMut>() else { return Vec::new() };
+    let tether = document.get("tether").and_then(Item::as_table_like);
+    let given = |key: &&&str| tether.is_some_and(|tether| tether.contains_key(key));
+    FAULTS.iter().filter(given).map(|key| format!("tether.{key}")).collect()
+}
+
 /// Changes the scenario of a past run into a mission that scans these boxes, each given by its south-west and
 /// north-east corners in metres. Obstacles that were found and zones that were drawn during the run become part of the
-/// drawing. `runs` are the runs that missed the areas in the boxes.
+/// drawing. `runs` are the runs that missed the areas in the boxes. Faults of the simulated tether are left out
+/// ([`left_out_of_rescan`]).
 ///
 /// # Errors
 /// The scenario of the run cannot be parsed because its journal was changed.
@@ -48,6 +61,11 @@ pub fn rescan(
     }
     mission["kind"] = value("cover");
     mission["boxes_m"] = value(boxes.iter().map(numbers).collect::<Array>());
+    if let Some(tether) = document.get_mut("tether").and_then(Item::as_table_like_mut) {
+        for key in FAULTS {
+            tether.remove(key);
+        }
+    }
     put_on_drawing(&mut document, found);
     for zone in drawn {
         add_zone(&mut document, zone);
@@ -103,4 +121,17 @@ pub(crate) fn pair(x: f64, y: f64) -> Item {
 fn numbers([low, high]: &[Point; 2]) -> Value {
     let rounded = |number: f64| (number * 1000.0).round() / 1000.0;
     Value::Array([low.x, low.y, high.x, high.y].map(rounded).into_iter().collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faults_of_the_tether_in_the_old_run_are_named() {
+        let text = "[tether]\nmodel = \"physical\"\nbreaks_at_s = 200.0\nreel_fails_at_s = 9.0\n";
+        assert_eq!(left_out_of_rescan(text), ["tether.reel_fails_at_s", "tether.breaks_at_s"]);
+        assert_eq!(left_out_of_rescan("tether = { breaks_at_n = 40.0 }"), ["tether.breaks_at_n"]);
+        assert!(left_out_of_rescan("[tether]\nfriction = 0.3\n").is_empty());
+    }
 }

@@ -138,7 +138,7 @@ fn drive(scenario: &Scenario, drives: &[(f64, f64)]) -> (f64, Vec<&'static str>)
         let lies = truth.tether.expect("there is a tether").lies.expect("the tether is physical");
         assert!(lies.line.iter().all(|at| at.x.is_finite() && at.y.is_finite()), "{:?}", lies.line);
         rules.drag_to(truth.pose.position);
-        rules.measure(&readings, Some(ERROR_M), scenario.sim.tick_s);
+        rules.measure(&readings, Some(ERROR_M), world, scenario.sim.tick_s);
         for event in rules.update(world, &map, scenario.sim.tick_s) {
             match event {
                 EventKind::Tethered { length_m, free_m, pull_n, measured, .. } => {

@@ -189,7 +189,10 @@ fn warn(worth: &Worth, preferences: &Preferences, scope: &Scope<'_>, scans_enoug
     if !worth.certificate.certified {
         warn(&format!("not certified: {}", worth.certificate.reasons.join("; ")));
     } else if preferences.pull_share(&Strain::from(&worth.certificate)) > 1.0 {
-        warn(&format!("no candidate needs less pull: {}", worth.certificate.warnings.join("; ")));
+        let why = worth.certificate.warnings.join("; ");
+        warn(&format!(
+            "no candidate keeps pull, length and wrap of the cable all within the preferred values: {why}"
+        ));
     } else if has_reel && !worth.meets(preferences) {
         warn("no candidate keeps the cable within the preferred length and wrap");
     }

@@ -14,6 +14,7 @@ use crate::{
     order::Order,
     phase::{Gait, Hold, HoldReason, Outcome, Resumes},
     task::CornerPatience,
+    tether::Tether,
     way_back::{Home, WayBack},
 };
 use geometry::{Braking, PathFollower};
@@ -24,6 +25,9 @@ use world::Point;
 const THERE_M: f64 = 0.1;
 /// Speed at corners and at the end of the way, metres per second.
 const SLOW_M_PER_S: f64 = 0.05;
+/// Highest speed beside a tether that lies on the floor, metres per second: its place is known less well than that of a taut
+/// one.
+const BESIDE_M_PER_S: f64 = 0.1;
 
 /// A drive back that was ordered.
 #[derive(Clone)]
@@ -31,12 +35,20 @@ pub(super) struct Back {
     to: Home,
     follower: PathFollower,
     at_corner: CornerPatience,
+    /// Whether the way leads beside a tether that lies on the floor.
+    is_beside: bool,
 }
 
 impl Back {
     fn along(way: &WayBack) -> Self {
         let follower = PathFollower::exact(&way.path);
-        Self { to: way.to, follower, at_corner: CornerPatience::default() }
+        let is_beside = way.slack_m.is_some();
+        Self { to: way.to, follower, at_corner: CornerPatience::default(), is_beside }
+    }
+
+    /// Highest speed on the way, metres per second, of a robot with a given highest speed.
+    fn fastest(&self, v_max_m_per_s: f64) -> f64 {
+        if self.is_beside { v_max_m_per_s.min(BESIDE_M_PER_S) } else { v_max_m_per_s }
     }
 
     /// The point to drive to.
@@ -82,6 +94,9 @@ impl Mission {
     }
 
     fn take_way_back(&mut self, way: WayBack) {
+        if let (Some(tether), Some(_)) = (&mut self.known.tether, way.slack_m) {
+            tether.leave_lying();
+        }
         self.known.back = Some(Back::along(&way));
         self.happened.push(EventKind::ReturnBegan { way });
     }
@@ -117,22 +132,20 @@ impl Mission {
     /// Ends the mission of a robot that is back.
     pub(super) fn end_back(&mut self) {
         let Some(back) = &self.known.back else { return };
-        let place = back.to.word();
+        let place = if back.is_beside { "beside the anchor" } else { back.to.at() };
+        let done = format!("ended by operator: robot is back {place}");
         let tether = self.known.tether.as_ref().filter(|_| back.to == Home::Anchor);
+        let lies = tether.filter(|_| back.is_beside).map_or_else(String::new, Tether::lies_words);
         match tether.and_then(|tether| tether.left_out(self.known.cable_world())) {
-            Some(why) => {
-                self.end(
-                    Outcome::Entangled,
-                    format!("ended by operator: robot is back at the {place}, but {why}"),
-                );
-            }
-            None => self.end(Outcome::Aborted, format!("ended by operator: robot is back at the {place}")),
+            Some(why) => self.end(Outcome::Entangled, format!("{done}, but {why}{lies}")),
+            None => self.end(Outcome::Aborted, format!("{done}{lies}")),
         }
     }
 
     /// Forgets a drive back that was broken off: the planner plans again from here.
     pub(super) fn leave_way_back(&mut self) {
         if self.known.back.take().is_some() {
+            self.known.tether.iter_mut().for_each(Tether::forget_lying);
             self.driving.course.cuts.clear();
             self.driving.course.want_plan(Reason::Operator);
         }
@@ -151,8 +164,8 @@ impl Known {
         let braking = Braking::of(&self.config.limits);
         let before = |way_m: f64| braking.speed_before(way_m, SLOW_M_PER_S);
         let to_corner = back.follower.corner_m(here).map_or(f64::INFINITY, before);
-        let speed =
-            before(back.follower.left_m(here) - THERE_M).min(to_corner).min(self.config.limits.v_max_m_per_s);
+        let fastest = back.fastest(self.config.limits.v_max_m_per_s);
+        let speed = before(back.follower.left_m(here) - THERE_M).min(to_corner).min(fastest);
         let velocity = onward.try_normalize(1e-9).map_or(onward, |direction| direction * speed);
         Some(self.sending().as_sent(Command::velocity(velocity)))
     }

@@ -66,7 +66,9 @@ impl Known {
         Self {
             tick: 0,
             phase: Phase::Waiting,
-            tether: tether.and_then(|tether| Tether::new(tether, radius_m, &drawing, start).ok()),
+            tether: tether
+                .and_then(|tether| Tether::new(tether, radius_m, &drawing, start).ok())
+                .map(|tether| tether.live(config.live)),
             locator: Locator::new(&config, &drawing),
             governor: Governor::new(&config, &drawing.zones),
             scan_guard: ScanGuard::default(),

@@ -90,7 +90,8 @@ impl Rules {
             .update(seen)
             .or_else(|| ZoneRule::update(seen))
             .or_else(|| seen.is_back.then_some(Verdict::Back))
-            .or_else(|| tether.reached(seen).map(by_tether))
+            .or_else(|| tether.reached_beside(seen).map(by_tether))
+            .or_else(|| Some(hold(HoldReason::Tether { message: seen.beside?.trouble()? })))
             .or_else(|| stuck.update_return(seen))
     }
 
@@ -99,8 +100,11 @@ impl Rules {
         // A hold by the operator gets the reason that needs a remedy.
         let yields =
             !hold.resumes.is_never() || matches!(hold.by, HoldReason::Operator | HoldReason::Stepped);
-        if let Some(breach) = ZoneRule::update(seen).filter(|_| yields) {
-            return Some(breach);
+        if yields {
+            let torn = || Some(Verdict::Hold(self.tether.found_torn(seen)?));
+            if let Some(reason) = ZoneRule::update(seen).or_else(torn) {
+                return Some(reason);
+            }
         }
         if hold.resumes != Resumes::WhenCleared {
             return None;

@@ -29,7 +29,7 @@ impl Known {
         if error_m.is_some() {
             tether.drag_to(self.locator.position());
         }
-        tether.measure(readings, error_m, self.config.tick_s);
+        tether.measure(readings, error_m, world, self.config.tick_s);
         let events = tether.update(world, map, self.config.tick_s);
         let reached = events.iter().find_map(|event| match event {
             EventKind::TetherAlarmRaised { alarm, reached: true } => Some(alarm.clone()),

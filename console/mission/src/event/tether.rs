@@ -70,6 +70,9 @@ pub enum TetherAlarm {
         paid_out_m: f64,
         /// Expected cable length, metres.
         explained_m: f64,
+        /// Whether the cable may also be slack, because a vehicle has no sensor of the pull.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        or_slack: bool,
     },
     /// The cable is torn: the reel has taken up cable that must be out, and nothing pulls at one of its ends.
     Broken {
@@ -77,6 +80,10 @@ pub enum TetherAlarm {
         paid_out_m: f64,
         /// Length that must be out if the cable leads to the robot, metres.
         needed_m: f64,
+        /// Whether only the encoder shows this, because a vehicle has no sensor of the pull; the length that must be out is
+        /// then that of the straight line to the anchor.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        by_encoder_alone: bool,
     },
     /// The hull does not fit through the return path along the cable.
     NoReturnPath,
@@ -125,15 +132,24 @@ impl fmt::Display for TetherAlarm {
                 let [sum, limit] = beside_limit(sum_rad.to_degrees(), limit_rad.to_degrees(), 0);
                 write!(f, "total tether wrap {sum}°, limit {limit}°")
             }
-            Self::Snag { paid_out_m, explained_m } => write!(
-                f,
-                "tether snagged on an unmapped object: {paid_out_m:.1} m paid out, {explained_m:.1} m expected"
-            ),
+            Self::Snag { paid_out_m, explained_m, or_slack } => {
+                let what = if *or_slack {
+                    "tether snagged or slack"
+                } else {
+                    "tether snagged on an unmapped object"
+                };
+                write!(f, "{what}: {paid_out_m:.1} m paid out, {explained_m:.1} m expected")
+            }
             Self::Slack { slack_m, pull_n } => write!(
                 f,
                 "reel does not take the tether up: {slack_m:.1} m slack behind the robot, pull {pull_n:.1} N"
             ),
-            Self::Broken { paid_out_m, needed_m } => write!(
+            Self::Broken { paid_out_m, needed_m, by_encoder_alone: true } => write!(
+                f,
+                "tether broken, or the encoder of the reel is wrong: {paid_out_m:.1} m are off the reel, but the anchor is \
+                 {needed_m:.1} m away"
+            ),
+            Self::Broken { paid_out_m, needed_m, .. } => write!(
                 f,
                 "tether broken: {paid_out_m:.1} m are off the reel, but the robot is {needed_m:.1} m of tether away, and \
                  nothing pulls"

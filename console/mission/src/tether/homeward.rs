@@ -34,7 +34,7 @@ impl Tether {
         Some(way)
     }
 
-    fn is_reel_too_weak(&self) -> bool {
+    pub(super) fn is_reel_too_weak(&self) -> bool {
         self.pull_needed_n().zip(self.config.reel).is_some_and(|(needed_n, reel)| needed_n > reel.pull_n)
     }
 

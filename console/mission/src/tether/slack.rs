@@ -65,6 +65,11 @@ impl Slack {
         false
     }
 
+    /// Cable that has become slack since it last pulled, metres.
+    pub(super) fn loose_m(&self) -> f64 {
+        self.loose_m
+    }
+
     /// The alarm, with the slack as a share of its limit.
     pub(super) fn alarm(&self) -> (TetherAlarm, f64) {
         let pull_n = self.pull_n.unwrap_or_default();

@@ -22,13 +22,16 @@ use world::tether::Reel;
 pub(crate) const STUDIES: &[Study] = &[Study {
     name: "tether-physics",
     about: "random tanks of radius 5 to 12 m: the certificate against a cable with weight and friction, at five ratios \
-            of the pull that a plan needs to the pull of its reel",
+            of the pull that a plan needs to the pull of its reel, and with a reel that stops",
     layouts: 8,
     run,
 }];
 
 /// The pull that a plan needs, as a share of the pull of the reel.
 const RATIOS: [f64; 5] = [0.5, 0.8, 1.0, 1.5, 3.0];
+/// The ratio of the cases with a reel that stops, and the shares of the path after which it does.
+const STOPPED_RATIO: f64 = 0.5;
+const STOPS_AT: [f64; 3] = [0.25, 0.5, 0.75];
 /// The id of the case that compares the needed pull with that of the simulated cable.
 const PULL: &str = "pull";
 /// Coefficient of friction on columns and walls.
@@ -38,6 +41,8 @@ const FRICTION: f64 = 0.3;
 #[derive(Debug, Clone, Copy)]
 enum Case {
     Ratio(f64),
+    /// The reel stops taking cable up after this share of the path.
+    Stopped(f64),
     Pull,
 }
 
@@ -45,6 +50,7 @@ impl Case {
     fn id(self) -> String {
         match self {
             Self::Ratio(ratio) => format!("ratio-{ratio:.1}"),
+            Self::Stopped(share) => format!("stopped-{share:.2}"),
             Self::Pull => PULL.into(),
         }
     }
@@ -60,7 +66,7 @@ enum Measured {
 }
 
 fn run(job: &Job<'_>) -> Result<Vec<Row>> {
-    let all = RATIOS.map(Case::Ratio).into_iter().chain([Case::Pull]);
+    let all = RATIOS.map(Case::Ratio).into_iter().chain(STOPS_AT.map(Case::Stopped)).chain([Case::Pull]);
     let cases = job.cases(all, |case| case.id())?;
     let methods = ["tether-safe", "hull-partition"].map(|id| Method::new(id, id, ""));
     let methods = job.methods(methods, |method| method.id.clone())?;
@@ -78,7 +84,8 @@ fn run(job: &Job<'_>) -> Result<Vec<Row>> {
             Err(error) => return Err(error.in_case(format!("{} seed {seed}", case.id()))),
         };
         Ok(match case {
-            Case::Ratio(ratio) => Measured::Drive(drive(&tank, &path, *ratio)),
+            Case::Ratio(ratio) => Measured::Drive(drive(&tank, &path, *ratio, None)),
+            Case::Stopped(share) => Measured::Drive(drive(&tank, &path, STOPPED_RATIO, Some(*share))),
             Case::Pull => Measured::Reeling(reeling(&tank, &path)),
         })
     })?;

@@ -68,7 +68,8 @@ pub(super) fn guide(word: &str) -> Guide {
             },
         },
         "snag" => Guide {
-            cause: "The reel has paid out more than the map explains: an unmapped object holds the tether.",
+            cause: "The reel has paid out more than the map explains: an unmapped object holds the tether. Without a sensor of the \
+            pull, the tether may also be slack.",
             holds: "The robot is held at once.",
             effect: "The tether's position is unknown; the return path is UNKNOWN.",
             remedies: const {
@@ -93,6 +94,8 @@ pub(super) fn guide(word: &str) -> Guide {
                 &[
                     run("Stay held (HOLD), and check the reel.", ActionId::Hold),
                     run("Resume: takes the slack in by driving back the way it came, then replans. Asks first.", ActionId::Resume)
+                        .when(When::Held),
+                    run("Drive back beside the tether, if the reel does not work. Asks first.", ActionId::DriveBack)
                         .when(When::Held),
                     OTHER_PLANNER,
                     END,
@@ -138,7 +141,8 @@ pub(super) fn guide(word: &str) -> Guide {
 
 fn broken() -> Guide {
     Guide {
-        cause: "The reel has taken up tether that must be out, and nothing pulls: the tether is torn.",
+        cause: "Less tether is off the reel than a tether to the robot needs, and nothing pulls: the tether is torn. Without a \
+        sensor of the pull, the encoder of the reel may also be wrong.",
         holds: "The robot is held at once.",
         effect: "A loose end lies on the floor. A robot that gets power and orders by its tether cannot move.",
         remedies: const {

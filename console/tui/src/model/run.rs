@@ -196,6 +196,11 @@ impl Run {
         self.about.as_ref().is_some_and(|about| matches!(about.mission.task, TaskConfig::Cover { .. }))
     }
 
+    /// Whether the tether is torn.
+    pub fn is_tether_broken(&self) -> bool {
+        self.tether.as_ref().is_some_and(|tether| tether.is_broken)
+    }
+
     /// Whether the hull is in a no-go zone.
     pub fn is_in_zone(&self) -> bool {
         self.alarms.list().iter().any(|alarm| matches!(alarm.cause, Cause::Zone(_)) && alarm.is_active())

@@ -107,6 +107,10 @@ fn asked(model: &Model) -> Option<Vec<String>> {
 const IN_ZONE: &str = "The HULL IS IN A NO-GO ZONE: the robot drives in the zone and may get stuck there. Safer: <cancel>, then \
                        <return> drives back.";
 
+/// The warning before a robot with a torn tether moves.
+const TETHER_BROKEN: &str = "The TETHER IS BROKEN: its rest lies on the floor, and the robot may drive over it. Safer: <cancel>, \
+                             then fetch the robot by hand, or <return> drives back beside the tether.";
+
 /// The question whether to run a plan without a certificate, with the reason for which it was refused.
 fn uncertified(phase: &Phase) -> Vec<String> {
     let question = "Run uncertified plan? <accept>: run, <cancel>: stay held.".into();
@@ -140,7 +144,8 @@ fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
         Overlay::Confirm(Ask::Resume) => {
             let question = "Resume? The robot will move. <accept>: resume, <cancel>: cancel.".into();
             let in_zone = model.live.run.is_in_zone().then(|| IN_ZONE.to_owned());
-            let first = std::iter::once(question).chain(in_zone);
+            let torn = model.live.run.is_tether_broken().then(|| TETHER_BROKEN.to_owned());
+            let first = std::iter::once(question).chain(torn).chain(in_zone);
             first.chain([moves(model)]).chain(continues(model)).collect()
         }
         Overlay::Confirm(Ask::FlyUncertified) => uncertified(model.live.run.phase()),
@@ -241,7 +246,8 @@ fn shadows_plan(model: &Model, shadow: &Shadow) -> String {
 /// The length and clearance of a way back: `To the anchor, 5.5 m, clearance 0.12 m`.
 pub(super) fn finish_way(way: &WayBack) -> String {
     let (length, clearance) = (text::number(way.length_m, 1), text::number(way.clearance_m, 2));
-    format!("To the {}, {length} m, clearance {clearance} m", way.to.word())
+    let beside = if way.slack_m.is_some() { ", slowly beside the tether on the floor" } else { "" };
+    format!("To the {}, {length} m, clearance {clearance} m{beside}", way.to.word())
 }
 
 /// Where the robot must stand before a re-scan, as a sentence; `None` if it was left there.

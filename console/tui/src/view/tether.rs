@@ -49,7 +49,7 @@ fn wide_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> 
     if tether.is_broken {
         return vec![
             row(0, "torn", (Role::Crit, format!("{out} m off the reel"))),
-            row(1, "return path", home(tether)),
+            row(1, "the rest", (Role::Text, "lies on the floor".into())),
         ];
     }
     let out = [format!("{out} of {reel}, {left} m left"), format!("{out} of {reel} m")];
@@ -112,16 +112,13 @@ fn narrow_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)
     let out = [format!("out {out} of {reel} m"), format!("out {out}/{reel} m")];
     let out = labelled(out_share(look, tether), out, room);
     let pull = pull(look, tether, ("reel needs ", room)).map(|pull| row(4, "", pull));
-    let felt = tether.measured.into_iter().flat_map(|measured| {
-        let (label, most_n) = felt_where(look);
-        [
-            row(3, &format!("{label} "), felt(measured.pull_n, most_n)),
-            row(slack_rank(measured, 5), "slack ", slack(measured)),
-        ]
-    });
+    let felt =
+        tether.measured.map(|measured| row(slack_rank(measured, 2), "", pull_and_slack(look, measured)));
+    let is_wound = wrap_share(look, tether) > text::CLOSE || tether.is_snagged;
+    let wrap_rank = if felt.is_none() || is_wound { 2 } else { 3 };
     [
         row(1, "", (out_role(look, tether), out)),
-        row(2, "", (wrap_role(look, tether), worst(look, tether, ("wrap ", room)))),
+        row(wrap_rank, "", (wrap_role(look, tether), worst(look, tether, ("wrap ", room)))),
         row(6, "total ", (Role::Text, total(tether))),
     ]
     .into_iter()
@@ -241,6 +238,17 @@ fn felt(pull_n: f64, most_n: Option<f64>) -> (Role, String) {
         }
         None => (Role::Text, format!("{} N (no limit given)", text::number(pull_n, 1))),
     }
+}
+
+/// The measured pull and the slack in one narrow row; near its limit, the slack comes first, with the limit.
+fn pull_and_slack(look: &Look, measured: MeasuredPull) -> (Role, String) {
+    let pull = text::number(measured.pull_n, 1);
+    if slack_rank(measured, 1) == 0 {
+        let (role, slack) = slack(measured);
+        return (role, format!("slack {slack}, {pull} N"));
+    }
+    let role = felt(measured.pull_n, felt_where(look).1).0;
+    (role, format!("pull {pull} N, slack {} m", text::number(measured.slack_m, 2)))
 }
 
 /// The rank of the slack among the rows of the pane: near its limit, it is more important than the wrap.

@@ -9,7 +9,7 @@ use world::Point;
 
 fn way() -> WayBack {
     let path = [(-0.78, 7.4), (4.0, 6.0), (9.4, 0.0)].map(|(x, y)| Point::new(x, y)).to_vec();
-    WayBack { to: Home::Anchor, path, length_m: 13.1, clearance_m: 0.12 }
+    WayBack { to: Home::Anchor, path, length_m: 13.1, clearance_m: 0.12, slack_m: None }
 }
 
 /// A mission whose end has been asked for, and whose way back is known.

@@ -493,7 +493,7 @@ impl ScriptedMission {
 
     /// The reel has paid out more than the map explains, and the robot is held.
     pub(crate) fn caught(&mut self) -> Vec<Event> {
-        let alarm = TetherAlarm::Snag { paid_out_m: 14.2, explained_m: 12.6 };
+        let alarm = TetherAlarm::Snag { paid_out_m: 14.2, explained_m: 12.6, or_slack: false };
         let message = alarm.to_string();
         let mut cable = self.cable();
         if let EventKind::Tethered { paid_out_m, free_m, .. } = &mut cable.kind {

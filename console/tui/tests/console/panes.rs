@@ -366,7 +366,7 @@ fn the_pull_the_slack_and_the_loops_of_a_tether_are_shown() {
 #[test]
 fn a_broken_tether_is_named_by_pane_and_alarm() {
     let mut screen = Screen::tethered();
-    let alarm = TetherAlarm::Broken { paid_out_m: 0.0, needed_m: 5.2 };
+    let alarm = TetherAlarm::Broken { paid_out_m: 0.0, needed_m: 5.2, by_encoder_alone: false };
     let held = HoldReason::Tether { message: alarm.to_string() };
     let alarmed = screen.mission.now(EventKind::TetherAlarmRaised { alarm, reached: true });
     let events = vec![screen.mission.cable(), alarmed, screen.mission.held_until(held, Resumes::Never)];

@@ -19,13 +19,37 @@ impl Known {
     /// # Errors
     /// The reason why no way was found, as a sentence.
     pub(in crate::engine) fn way_back(&self) -> Result<WayBack, String> {
-        let (to, path) = match &self.tether {
-            Some(tether) => (Home::Anchor, self.way_along(tether)?),
-            None => (Home::Start, self.shortest_way(self.config.start.position)?),
+        let (to, path, slack_m) = match &self.tether {
+            Some(tether) if tether.is_left_lying() => {
+                (Home::Anchor, self.way_beside(tether)?, Some(tether.excess_m()))
+            }
+            Some(tether) => (Home::Anchor, self.way_along(tether)?, None),
+            None => (Home::Start, self.shortest_way(self.config.start.position)?, None),
         };
         let path = self.without_narrow_end(path);
         let clearance_m = self.hull_clearance_m(&path);
-        Ok(WayBack { to, length_m: polyline::length_m(&path), clearance_m, path })
+        Ok(WayBack { to, length_m: polyline::length_m(&path), clearance_m, path, slack_m })
+    }
+
+    /// The way beside a tether that lies on the floor.
+    ///
+    /// # Errors
+    /// The robot does not fit beside the tether; the remedies.
+    fn way_beside(&self, tether: &Tether) -> Result<Vec<Point>, String> {
+        let fenced = fenced(self.chart.world());
+        let beside =
+            |room_m: f64| tether.way_beside(&fenced, room_m).filter(|way| self.is_free_from_here(way));
+        self.widest(beside).ok_or_else(|| {
+            let cause = if tether.torn().is_some() {
+                "the tether is broken and lies on the floor"
+            } else {
+                "the reel does not take the tether up"
+            };
+            format!(
+                "{cause}, and the hull does not fit beside the tether all the way to the anchor; end the mission here and \
+                 fetch the robot by hand, or repair the reel"
+            )
+        })
     }
 
     /// Whether the rest of the way back is free.

@@ -6,6 +6,7 @@ use crate::{
     phase::{Hold, Outcome},
     standing::PositionTrust,
     task::Task,
+    tether::Clearance,
 };
 use planner_api::Reason;
 use world::Point;
@@ -37,6 +38,8 @@ pub(in crate::engine) struct Seen<'a> {
     pub touched: bool,
     /// The tether limit that was reached in this tick, if any.
     pub reached: Option<&'a TetherAlarm>,
+    /// What the tether on the floor beside which the robot drives back means for it; `None` if it drives back beside none.
+    pub beside: Option<Clearance>,
     /// Whether the mission may begin a plan with a return path along the tether.
     pub can_replan: bool,
     /// Whether the hull fits through the return path along the tether.

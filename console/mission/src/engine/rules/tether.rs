@@ -45,6 +45,22 @@ impl TetherRule {
         (!is_old).then_some(alarm)
     }
 
+    /// The hold of a robot that is held while its cable is found torn: it gets the reason that needs a remedy, so that an
+    /// operator who resumes has seen it.
+    pub(crate) fn found_torn(&mut self, seen: &Seen<'_>) -> Option<Hold> {
+        let alarm = seen.reached.filter(|alarm| matches!(alarm, TetherAlarm::Broken { .. }))?;
+        self.reached(seen).map(|_| held(alarm.to_string(), Resumes::Never))
+    }
+
+    /// The same for a robot that drives back. Slack that was known when the order was given does not count again, nor does a
+    /// return path along a cable beside which the robot drives.
+    pub(crate) fn reached_beside<'a>(&mut self, seen: &Seen<'a>) -> Option<&'a TetherAlarm> {
+        let is_known = |alarm: &TetherAlarm| {
+            matches!(alarm, TetherAlarm::Slack { .. } | TetherAlarm::Snag { .. } | TetherAlarm::NoReturnPath)
+        };
+        self.reached(seen).filter(|alarm| seen.beside.is_none() || !is_known(alarm))
+    }
+
     /// Processes one tick of a running robot.
     pub(crate) fn update(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
         let alarm = self.reached(seen)?;

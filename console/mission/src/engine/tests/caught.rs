@@ -254,14 +254,37 @@ fn a_torn_cable_holds_the_robot_once_and_an_operator_may_go_on() {
 }
 
 #[test]
-fn a_cable_that_tears_while_the_robot_is_held_holds_it_again_when_it_moves() {
+fn a_cable_that_tears_while_the_robot_is_held_becomes_the_reason_and_one_resume_suffices() {
     let mut flight = torn(tethered(20.0));
     flight.tick(&[Order::Hold]);
     go_on(&mut flight, 50);
-    assert_eq!((breaks(&flight), flight.held_by()), (1, Some(&HoldReason::Operator)));
-    flight.tick(&[Order::Resume]);
-    go_on(&mut flight, 5);
     assert!(matches!(flight.held_by(), Some(HoldReason::Tether { message }) if message.contains("broken")));
+    assert_eq!(breaks(&flight), 1);
+    flight.tick(&[Order::Resume]);
+    go_on(&mut flight, 300);
+    assert_eq!((breaks(&flight), flight.ended()), (1, Some(Outcome::Complete)));
+}
+
+/// A vehicle without a sensor of the pull.
+fn vehicle(caught_m: impl Fn(f64) -> f64) -> Flight {
+    let mut flight = Flight::new(MissionConfig { live: true, ..tethered(20.0) });
+    flight.reel = cable(Point::new(-3.0, 0.0), &[]);
+    flight.tick(&[Order::Start]);
+    flight.fly(60);
+    for _ in 0..80 {
+        flight.caught_m = caught_m(flight.reel.as_ref().unwrap().length_m());
+        flight.tick(&[]);
+    }
+    flight
+}
+
+#[test]
+fn the_encoder_alone_shows_that_the_cable_of_a_vehicle_is_torn_or_caught_or_slack() {
+    let is_held = |flight: &Flight, word: &str| matches!(flight.held_by(), Some(HoldReason::Tether { message }) if message.contains(word));
+    let torn = vehicle(|taut_m| -taut_m);
+    assert!(breaks(&torn) == 1 && is_held(&torn, "or the encoder of the reel is wrong"));
+    let more = vehicle(|_| 1.5);
+    assert!(is_held(&more, "tether snagged or slack: "), "{:?}", more.mission.phase());
 }
 
 #[test]
@@ -273,8 +296,9 @@ fn a_torn_cable_ends_a_mission_without_an_operator() {
     assert!(flight.events.iter().any(is_reason));
 }
 
-#[test]
-fn a_robot_with_a_slack_cable_drives_back_by_the_place_where_the_cable_last_pulled() {
+/// A mission whose reel stops taking the cable up after 30 % of the floor, until the slack rule holds the robot; with the
+/// length off the reel, and the place where the cable last pulled.
+fn slack() -> (Flight, f64, Point) {
     let anchor = covering().start.position;
     let limits = tether::Limits { reel_length_m: 50.0, wrap_max_rad: 50.0, wrap_total_max_rad: 50.0 };
     let config = TetherConfig { anchor, limits, friction: 0.3, reel: None, allow_uncertified: false };
@@ -297,15 +321,116 @@ fn a_robot_with_a_slack_cable_drives_back_by_the_place_where_the_cable_last_pull
         }
         flight.pull_n = Some(if flight.caught_m > 0.01 { 0.0 } else { 3.0 });
     }
-    let (_, last_pulled_at) = stopped.unwrap();
-    assert!(matches!(flight.held_by(), Some(HoldReason::Tether { .. })));
-    flight.tick(&[Order::DriveBack]);
-    let way = flight.events.iter().find_map(|event| match &event.kind {
+    assert!(matches!(flight.held_by(), Some(HoldReason::Tether { message }) if message.contains("slack")));
+    let (out_m, last_pulled_at) = stopped.unwrap();
+    (flight, out_m, last_pulled_at)
+}
+
+/// Goes on with a reel that takes nothing up, until the robot stops; `drawn_m` more metres come off the reel.
+fn go_on_with_a_dead_reel(flight: &mut Flight, out_m: f64, drawn_m: f64) {
+    for _ in 0..4000 {
+        let taut_m = flight.reel.as_ref().unwrap().length_m();
+        flight.caught_m = (out_m + drawn_m - taut_m).max(0.0);
+        flight.pull_n = Some(if flight.caught_m > 0.01 { 0.0 } else { 3.0 });
+        flight.tick(&[]);
+        if flight.held_by().is_some() || flight.ended().is_some() {
+            return;
+        }
+    }
+}
+
+fn way_back(flight: &Flight) -> Vec<Point> {
+    let way = flight.events.iter().rev().find_map(|event| match &event.kind {
         EventKind::ReturnBegan { way } => Some(way.path.clone()),
         _ => None,
     });
-    let way = way.unwrap();
+    way.unwrap()
+}
+
+#[test]
+fn a_robot_with_a_dead_reel_drives_back_beside_its_cable_by_one_order() {
+    let (mut flight, out_m, last_pulled_at) = slack();
+    let (anchor, hull_m) = (covering().start.position, covering().limits.radius_m);
+    let says = flight.mission.way_back().unwrap().to_string();
+    assert!(says.contains("slowly beside the tether on the floor"), "{says}");
+    flight.tick(&[Order::DriveBack]);
+    let way = way_back(&flight);
     let passes_m = way.iter().map(|at| (at - last_pulled_at).norm()).fold(f64::INFINITY, f64::min);
     assert!(passes_m < 0.15, "{passes_m} m from the place where the cable last pulled");
-    assert!((way.last().unwrap() - anchor).norm() < 0.3, "{way:?}");
+    let from_anchor_m = (way.last().unwrap() - anchor).norm();
+    assert!((hull_m + 0.1..1.8).contains(&from_anchor_m), "{way:?}");
+    // The cable lies along the straight line to the place where it last pulled.
+    let lies = [anchor, last_pulled_at + (anchor - last_pulled_at).normalize() * 0.8];
+    let beside = way.iter().skip_while(|at| (*at - last_pulled_at).norm() > 0.15).skip(1);
+    let beside: Vec<Point> = world::polyline::resampled(&beside.copied().collect::<Vec<_>>(), 0.05);
+    assert!(beside.iter().all(|at| world::polyline::distance_m(&lies, *at) > hull_m + 0.1), "{way:?}");
+    let before = flight.pose.position;
+    flight.tick(&[]);
+    assert!((flight.pose.position - before).norm() < 0.1 * 0.1 + 0.01, "slowly");
+    go_on_with_a_dead_reel(&mut flight, out_m, 0.0);
+    let reason = flight.events.iter().rev().find_map(|event| match &event.kind {
+        EventKind::Ended { reason, .. } => Some(reason.as_str()),
+        _ => None,
+    });
+    assert_eq!((flight.ended(), holds(&flight)), (Some(Outcome::Aborted), 1), "{reason:?}");
+    let reason = reason.unwrap();
+    assert!(reason.contains("robot is back beside the anchor") && reason.contains("by hand"), "{reason}");
+}
+
+#[test]
+fn a_robot_that_is_held_beside_its_cable_drives_on_beside_it_and_not_back_over_it() {
+    let (mut flight, out_m, last_pulled_at) = slack();
+    flight.tick(&[Order::DriveBack]);
+    for _ in 0..400 {
+        flight.caught_m = (out_m - flight.reel.as_ref().unwrap().length_m()).max(0.0);
+        flight.pull_n = Some(0.0);
+        flight.tick(&[]);
+    }
+    flight.tick(&[Order::Hold]);
+    let here = flight.pose.position;
+    flight.tick(&[Order::DriveBack]);
+    let way = way_back(&flight);
+    let back_m = way.iter().map(|at| (at - last_pulled_at).norm()).fold(f64::INFINITY, f64::min);
+    assert!(back_m > (here - last_pulled_at).norm() - 1.0, "{way:?}");
+    go_on_with_a_dead_reel(&mut flight, out_m, 0.0);
+    assert_eq!(flight.ended(), Some(Outcome::Aborted), "{:?}", flight.mission.phase());
+}
+
+#[test]
+fn cable_that_comes_off_the_reel_on_the_way_beside_it_holds_the_robot() {
+    let (mut flight, out_m, _) = slack();
+    flight.tick(&[Order::DriveBack]);
+    flight.fly(50);
+    go_on_with_a_dead_reel(&mut flight, out_m, 0.5);
+    assert!(
+        matches!(flight.held_by(), Some(HoldReason::Tether { message }) if message.contains("more tether comes off the reel")),
+        "{:?}",
+        flight.mission.phase()
+    );
+}
+
+#[test]
+fn without_room_beside_a_slack_cable_the_order_is_refused_with_the_remedies() {
+    let (mut flight, ..) = slack();
+    let (here, anchor) = (flight.pose.position, covering().start.position);
+    let along = (anchor - here).normalize();
+    // A fence on each side of the cable, with a gap in which the hull would stand on it.
+    let fence = |id: u32, side: f64| {
+        let aside = Vector::new(-along.y, along.x) * side * 0.5;
+        let ends = [here - along * 0.6 + aside, here + along * 1.5 + aside];
+        let points = ends.iter().map(|end| flight.pose.tank_from_robot().inverse() * end).collect();
+        Sighting { id: ObstacleId(id), shape_in_robot: Shape::Polyline { points, half_width_m: 0.05 } }
+    };
+    let end = |id: u32| {
+        let across = Vector::new(-along.y, along.x) * 0.5;
+        let ends = [here - along * 0.6 + across, here - along * 0.6 - across];
+        let points = ends.iter().map(|end| flight.pose.tank_from_robot().inverse() * end).collect();
+        Sighting { id: ObstacleId(id), shape_in_robot: Shape::Polyline { points, half_width_m: 0.05 } }
+    };
+    flight.sightings = vec![fence(7, 1.0), fence(8, -1.0), end(9)];
+    flight.tick(&[]);
+    let events = flight.tick(&[Order::DriveBack]);
+    let why = refusal(&events).unwrap_or_default();
+    assert!(why.contains("does not take the tether up") && why.contains("fetch the robot by hand"), "{why}");
+    assert!(flight.held_by().is_some());
 }

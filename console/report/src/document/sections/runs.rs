@@ -131,6 +131,10 @@ fn tether_table(tether: &TetherPart) -> Table {
         let name = "Tether found broken";
         table.row(vec![name.into(), "".into(), clock(at_s).into(), "".into(), "".into(), "".into()]);
     }
+    if truth.is_some_and(|truth| truth.torn_at_end && truth.broken_at_s.is_none()) {
+        let name = "Tether truly torn when the run ended";
+        table.row(vec![name.into(), "".into(), "".into(), "".into(), "".into(), "yes".into()]);
+    }
     if let Some(times) = truth.and_then(|truth| truth.over_own) {
         let name = "Times that the robot drove over its own tether";
         table.row(vec![name.into(), "".into(), "".into(), "".into(), "".into(), times.to_string().into()]);

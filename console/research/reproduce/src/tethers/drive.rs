@@ -46,15 +46,18 @@ pub(super) struct Drive {
     /// How often the robot would have driven onto its own cable on the way home after the hold, and on the taut line; `None` if
     /// it was not held.
     pub times_over_home: Option<(usize, usize)>,
+    /// Whether the mission refuses the way home after the hold, because there is no room beside the cable; `None` if the robot
+    /// was not held.
+    pub is_home_refused: Option<bool>,
     /// How often the cable counted as caught.
     pub snags: usize,
     /// Length of cable beyond the taut line after the return, metres.
     pub end_excess_m: f64,
 }
 
-/// Drives a path with a cable on a reel whose pull is the needed one divided by a ratio. The drive goes on after a hold,
-/// as without the rules.
-pub(super) fn drive(tank: &Tank, path: &[Point], ratio: f64) -> Drive {
+/// Drives a path with a cable on a reel whose pull is the needed one divided by a ratio, and that stops taking cable up
+/// after a share of the path, if one is given. The drive goes on after a hold, as without the rules.
+pub(super) fn drive(tank: &Tank, path: &[Point], ratio: f64, stops_at: Option<f64>) -> Drive {
     let world = tank.world();
     let way = polyline::resampled(path, SPEED_M_PER_S * TICK_S);
     let Some(mut taut) = taut(tank, &world) else { return Drive::default() };
@@ -62,7 +65,11 @@ pub(super) fn drive(tank: &Tank, path: &[Point], ratio: f64) -> Drive {
     let mut run = Run::new(tank, &world, needed_n / ratio, longest_m + SPARE_M);
     let mut drive = Drive { longest_m, ..Drive::default() };
     let mut was_over = false;
+    let stops = stops_at.map(|share| (share * way.len() as f64) as usize);
     for (index, at) in way.iter().enumerate() {
+        if stops == Some(index) {
+            run.chain.stop_reel();
+        }
         taut.drag_to(*at);
         let over = run.step(*at);
         drive.excess_max_m = drive.excess_max_m.max(run.chain.paid_out_m() - taut.length_m());
@@ -76,7 +83,9 @@ pub(super) fn drive(tank: &Tank, path: &[Point], ratio: f64) -> Drive {
         if !drive.is_held && run.is_raised(|alarm| matches!(alarm, TetherAlarm::Slack { .. })) {
             drive.is_held = true;
             drive.is_freed = Some(run.clone().go_back_until_taut(&way[..=index]));
-            let home = run.rules.way_home(&world, HULL_M).zip(run.rules.return_path(&world, HULL_M));
+            let home = run.rules.way_beside(&world, HULL_M);
+            drive.is_home_refused = Some(home.is_none());
+            let home = home.zip(run.rules.return_path(&world, HULL_M));
             drive.times_over_home =
                 home.map(|(home, on_line)| (run.times_over_on(&home), run.times_over_on(&on_line)));
         }
@@ -165,7 +174,7 @@ impl<'a> Run<'a> {
             ..Readings::default()
         };
         self.rules.drag_to(at);
-        self.rules.measure(&readings, Some(ERROR_M), TICK_S);
+        self.rules.measure(&readings, Some(ERROR_M), self.world, TICK_S);
         self.raised.clear();
         for event in self.rules.update(self.world, &self.map, TICK_S) {
             match event {
@@ -177,12 +186,12 @@ impl<'a> Run<'a> {
         self.chain.is_under(HULL_M)
     }
 
-    /// How often the robot drives onto its own cable on a way home, up to a hull's length before the anchor.
+    /// How often the robot drives onto its own cable on a way home.
     fn times_over_on(&self, way: &[Point]) -> usize {
         let mut run = self.clone();
         let (mut times, mut was_over) = (0, false);
         for at in polyline::resampled(way, SPEED_M_PER_S * TICK_S) {
-            let is_over = run.step(at) && (at - run.rules.anchor()).norm() > 2.0 * HULL_M;
+            let is_over = run.step(at);
             times += usize::from(is_over && !was_over);
             was_over = is_over;
         }

@@ -53,6 +53,10 @@ fn of_drives(block: &Block<'_>, drives: &[(u64, &Drive)]) -> Vec<Row> {
         over.iter().map(|drive| drive.is_held && drive.times_over_before_hold == 0).collect(),
     ));
     rows.push(rate("freed_rate", drives.iter().filter_map(|(_, drive)| drive.is_freed).collect()));
+    rows.push(rate(
+        "home_refused_rate",
+        drives.iter().filter_map(|(_, drive)| drive.is_home_refused).collect(),
+    ));
     let homes: Vec<(u64, &(usize, usize))> =
         drives.iter().filter_map(|(seed, drive)| Some((*seed, drive.times_over_home.as_ref()?))).collect();
     if !homes.is_empty() {

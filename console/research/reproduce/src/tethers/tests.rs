@@ -28,19 +28,28 @@ fn path() -> Vec<Point> {
 
 #[test]
 fn a_strong_reel_keeps_the_certificate_and_a_weak_one_is_held_before_the_robot_meets_its_cable() {
-    let strong = drive(&tank(), &path(), 0.8);
+    let strong = drive(&tank(), &path(), 0.8, None);
     assert!(strong.excess_max_m <= 0.3 && strong.times_over == 0 && strong.snags == 0, "{strong:?}");
     assert!(!strong.is_held && strong.end_excess_m < 0.3, "{strong:?}");
-    let weak = drive(&tank(), &path(), 3.0);
+    let weak = drive(&tank(), &path(), 3.0, None);
     assert!(weak.excess_max_m > 1.0 && weak.is_held && weak.times_over_before_hold == 0, "{weak:?}");
     assert_eq!(weak.is_freed, Some(true), "{weak:?}");
 }
 
 #[test]
 fn the_way_home_after_slack_leads_beside_the_cable_that_lies_on_the_floor() {
-    let weak = drive(&tank(), &path(), 1.5);
+    let weak = drive(&tank(), &path(), 1.5, None);
     let Some((home, on_line)) = weak.times_over_home else { panic!("not held: {weak:?}") };
     assert!(home == 0 && on_line > 0, "{weak:?}");
+}
+
+#[test]
+fn with_a_reel_that_has_stopped_the_robot_drives_home_beside_its_cable() {
+    for share in [0.3, 0.45, 0.6, 0.75] {
+        let dead = drive(&tank(), &path(), 0.5, Some(share));
+        let Some((home, _)) = dead.times_over_home else { panic!("refused or not held: {share} {dead:?}") };
+        assert!(dead.is_held && home == 0, "{share} {dead:?}");
+    }
 }
 
 #[test]

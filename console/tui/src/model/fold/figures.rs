@@ -154,9 +154,9 @@ fn of_tether(alarm: &TetherAlarm, reached: bool, promised_m: Option<f64>) -> Opt
         | TetherAlarm::WrapTotal { sum_rad: now_rad, limit_rad } => {
             Some(reading(now_rad.to_degrees(), share * limit_rad.to_degrees(), degrees))
         }
-        TetherAlarm::Snag { paid_out_m, explained_m } => Some(reading(*paid_out_m, *explained_m, metres)),
+        TetherAlarm::Snag { paid_out_m, explained_m, .. } => Some(reading(*paid_out_m, *explained_m, metres)),
         TetherAlarm::Slack { slack_m, .. } => Some(reading(*slack_m, SLACK_M, (2, " m"))),
-        TetherAlarm::Broken { paid_out_m, needed_m } => Some(reading(*paid_out_m, *needed_m, metres)),
+        TetherAlarm::Broken { paid_out_m, needed_m, .. } => Some(reading(*paid_out_m, *needed_m, metres)),
         TetherAlarm::NoReturnPath | TetherAlarm::Strayed => None,
     }
 }

@@ -27,6 +27,7 @@ pub(super) fn clauses(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String>
         (Some(trouble), _) => held_without_position(head, by, trouble),
         (None, Some(fault)) => held_without_planner(head, by, &fault.message),
         (None, None) if run.is_in_zone() => held_in_zone(head, by),
+        (None, None) if run.is_tether_broken() => held_by_break(head, by),
         (None, None) => held_for_good(head, by),
     });
     if head == Head::NotConfirmed {
@@ -168,6 +169,15 @@ fn held_in_zone(head: Head, by: &HoldReason) -> Vec<String> {
         by => head.with(&format!("{}; hull in a no-go zone.", reason(by))),
     };
     vec![state, "<return>: drive back.".into(), "<end>: end mission.".into()]
+}
+
+/// A hold of a robot whose tether is torn, whatever the reason for the hold.
+fn held_by_break(head: Head, by: &HoldReason) -> Vec<String> {
+    let state = match by {
+        HoldReason::Tether { .. } => head.with(": tether broken."),
+        by => head.with(&format!("{}; tether broken.", reason(by))),
+    };
+    vec![state, "<end>: end mission.".into(), "<resume>: resume.".into(), "<return>: drive back.".into()]
 }
 
 /// A hold that only an order can end.

@@ -59,6 +59,7 @@ fn lines(model: &Model, result: &RunResult, columns: usize) -> Vec<Parts> {
     if model.ui.parts.without_scan {
         lines.extend(wrapped(Role::Text, "Not a scanning mission."));
     }
+    lines.extend(torn(result).iter().flat_map(|words| wrapped(Role::Warn, words)));
     lines.extend(requested(model).iter().flat_map(|words| wrapped(Role::Text, words)));
     lines.extend(guaranteed(model, result).iter().flat_map(|words| wrapped(Role::Text, words)));
     for violation in result.summary.violations.iter().flatten() {
@@ -209,6 +210,15 @@ fn figures(model: &Model, result: &RunResult) -> Vec<Figure> {
     ));
     figures.retain(Figure::applies);
     figures
+}
+
+/// The break of the tether: when the mission found it or, in a simulation, that the mission did not find it.
+fn torn(result: &RunResult) -> Option<String> {
+    let tether = result.summary.tether.as_ref()?;
+    match tether.broken_at_s {
+        Some(at_s) => Some(format!("! tether found broken at T+{}", text::clock(at_s))),
+        None => tether.torn_at_end.then(|| "! tether truly torn at the end; not found broken".to_owned()),
+    }
 }
 
 /// The smallest clearance at the estimated position, metres.

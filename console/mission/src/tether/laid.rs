@@ -1,0 +1,177 @@
+//! Where the cable lies on the floor, from the path driven, the map and the length off the reel.
+//!
+//! A chain of short links from the anchor to the robot. A link moves only if it is pulled: the robot draws the chain behind
+//! itself, each link toward the one ahead of it, and a reel that takes cable up does the same from the anchor. The length of
+//! the chain is the length off the reel, so a cable without slack lies along the taut line, and one whose reel has stopped
+//! lags behind a robot that moves sideways. Weight and friction do not count: they decide how hard the cable pulls, and little
+//! where it lies. Nothing here is known only to a simulator.
+
+use world::{Point, Shape, Vector, World, tether::Cable};
+
+/// Length of a link, metres; a little more or less, so that whole links make up the length off the reel.
+const LINK_M: f64 = 0.1;
+/// How often the ends of the chain are drawn in one step.
+const ROUNDS: usize = 10;
+/// Distance for the slope of the distance to a shape, metres.
+const SLOPE_M: f64 = 1e-4;
+/// Distance from its line within which points are left out of it, metres.
+const DRAWN_M: f64 = 0.03;
+
+/// A chain of links on the floor.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Laid {
+    /// The ends of the links, from the anchor to the robot; at least two.
+    nodes: Vec<Point>,
+    /// Length of each link, metres.
+    link_m: f64,
+}
+
+impl Laid {
+    /// Lays the chain along a taut cable.
+    pub(super) fn along(taut: &Cable) -> Self {
+        let mut nodes = world::polyline::resampled(&taut.taut_line(), LINK_M);
+        if nodes.len() < 2 {
+            nodes = vec![taut.tip(); 2];
+        }
+        Self { nodes, link_m: LINK_M }
+    }
+
+    /// Moves the robot, with a given length off the reel, metres. A chain much longer than this has no meaning.
+    pub(super) fn step(&mut self, here: Point, out_m: f64, world: &World) {
+        let links = ((out_m / LINK_M).round().clamp(1.0, 1e4)) as usize;
+        self.link_m = (out_m / links as f64).max(0.0);
+        while self.nodes.len() > links + 1 {
+            self.nodes.remove(1);
+        }
+        while self.nodes.len() < links + 1 {
+            let beside_anchor = self.nodes[0] + (self.nodes[1] - self.nodes[0]) * 0.5;
+            self.nodes.insert(1, beside_anchor);
+        }
+        let last = self.nodes.len() - 1;
+        self.nodes[last] = here;
+        for _ in 0..ROUNDS {
+            for node in (1..last).rev() {
+                self.draw(node, node + 1, world);
+            }
+            for node in 1..last {
+                self.draw(node, node - 1, world);
+            }
+        }
+    }
+
+    /// Draws a node toward another one that is more than a link away, and out of the objects in its way.
+    fn draw(&mut self, node: usize, ahead: usize, world: &World) {
+        let apart = self.nodes[node] - self.nodes[ahead];
+        let apart_m = apart.norm();
+        if apart_m > self.link_m {
+            let drawn = self.nodes[ahead] + apart * (self.link_m / apart_m);
+            self.nodes[node] =
+                world.obstacles.iter().fold(drawn, |at, obstacle| outside(at, &obstacle.shape));
+        }
+    }
+
+    /// The length of the chain, metres.
+    pub(super) fn length_m(&self) -> f64 {
+        self.link_m * (self.nodes.len() - 1) as f64
+    }
+
+    /// The line of the chain from the anchor to the robot, without points that lie almost on it.
+    pub(super) fn line(&self) -> Vec<Point> {
+        let mut line = vec![self.nodes[0]];
+        let mut from = 0;
+        for to in 2..self.nodes.len() {
+            let between = &self.nodes[from + 1..to];
+            let ends = [self.nodes[from], self.nodes[to]];
+            if between.iter().any(|at| world::polyline::distance_m(&ends, *at) > DRAWN_M) {
+                from = to - 1;
+                line.push(self.nodes[from]);
+            }
+        }
+        line.push(self.nodes[self.nodes.len() - 1]);
+        line
+    }
+
+    /// The part of the chain that does not lead straight away from the robot: without its last metres.
+    pub(super) fn without_end(&self, end_m: f64) -> &[Point] {
+        let kept = self.nodes.len().saturating_sub((end_m / self.link_m.max(1e-3)).ceil() as usize);
+        &self.nodes[..kept]
+    }
+}
+
+/// The nearest place outside a shape.
+fn outside(at: Point, shape: &Shape) -> Point {
+    let inside_m = -shape.distance_m(at);
+    if inside_m <= 0.0 {
+        return at;
+    }
+    let slope = |by: Vector| (shape.distance_m(at + by) - shape.distance_m(at - by)) / (2.0 * SLOPE_M);
+    let away = Vector::new(slope(Vector::new(SLOPE_M, 0.0)), slope(Vector::new(0.0, SLOPE_M)));
+    away.try_normalize(1e-9).map_or(at, |away| at + away * inside_m)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use world::{Boundary, Obstacle, ObstacleId, polyline};
+
+    fn tank(columns: &[Shape]) -> World {
+        let obstacle = |shape: &Shape| Obstacle {
+            id: ObstacleId(1),
+            name: "C".into(),
+            shape: shape.clone(),
+            known: true,
+        };
+        World {
+            boundary: Boundary::Circle { radius_m: 30.0 },
+            obstacles: columns.iter().map(obstacle).collect(),
+            stations: Vec::new(),
+            zones: Vec::new(),
+        }
+    }
+
+    /// The chain and the taut cable after a path from the anchor at the origin; `out_m` gives the length off the reel for the
+    /// taut length and the length so far.
+    fn driven(world: &World, path: &[Point], out_m: impl Fn(f64, f64) -> f64) -> (Laid, Cable) {
+        let shapes: Vec<Shape> = world.obstacles.iter().map(|obstacle| obstacle.shape.clone()).collect();
+        let mut taut = Cable::new(Point::origin(), &world.boundary, &shapes).unwrap();
+        let mut laid = Laid::along(&taut);
+        let mut out = 0.0;
+        for at in polyline::resampled(path, 0.03) {
+            taut.drag_to(at);
+            out = out_m(taut.length_m(), out);
+            laid.step(at, out, world);
+        }
+        (laid, taut)
+    }
+
+    #[test]
+    fn with_a_good_reel_the_chain_lies_near_the_taut_line() {
+        let world = tank(&[Shape::Disc { center: Point::new(3.0, 0.0), radius_m: 0.5 }]);
+        let path = [(0.0, 0.0), (2.0, 3.0), (7.0, 1.0), (6.0, -3.0), (7.0, 1.0), (4.0, 4.0)];
+        let path = path.map(|(x, y)| Point::new(x, y));
+        for n in 2..=path.len() {
+            let (laid, taut) = driven(&world, &path[..n], |taut_m, _| taut_m);
+            let (line, taut_line) = (laid.line(), taut.taut_line());
+            let far_m = line.iter().map(|at| polyline::distance_m(&taut_line, *at));
+            // An excess of 0.1 m already lets 7 m of cable bow by 0.5 m, and a permitted reel leaves up to 0.3 m.
+            assert!(far_m.fold(0.0, f64::max) < 0.5, "{n}: {line:?} {taut_line:?}");
+        }
+    }
+
+    #[test]
+    fn with_a_dead_reel_the_chain_lags_behind_a_robot_that_moves_across_and_lies_behind_one_that_returns() {
+        let world = tank(&[]);
+        let arc =
+            (0..=30).map(|deg| Point::origin() + geometry::unit_vector(f64::from(deg).to_radians()) * 10.0);
+        let mut path = vec![Point::origin()];
+        path.extend(arc);
+        let (laid, taut) = driven(&world, &path, f64::max);
+        let middle = laid.nodes[laid.nodes.len() / 2];
+        assert!(middle.y < 0.5 * taut.tip().y - 0.1, "{middle:?}");
+        let back = [Point::origin(), Point::new(9.0, 0.0), Point::new(8.5, 0.8), Point::new(4.0, 0.8)];
+        let (laid, _) = driven(&world, &back, f64::max);
+        let line = laid.line();
+        assert!(polyline::distance_m(&line, Point::new(3.0, 0.0)) < 0.1, "the far part still lies there");
+        assert!(polyline::distance_m(&line, Point::new(3.0, 0.8)) > 0.5, "nothing lies ahead: {line:?}");
+    }
+}
