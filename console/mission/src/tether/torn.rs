@@ -76,15 +76,15 @@ impl Torn {
 mod tests {
     use super::*;
 
-    fn least(taut_m: f64, straight_m: Option<f64>) -> Option<Least> {
-        Some(Least { taut_m, straight_m })
+    fn least(taut_m: f64, straight_m: Option<f64>) -> Least {
+        Least { taut_m, straight_m }
     }
 
     /// Whether a cable of which 5 m must be out counts as torn after some seconds with these readings.
     fn is_torn(out_m: f64, reel_pull_n: Option<f64>, robot_pull_n: Option<f64>, seconds: f64) -> bool {
         let readings = Readings { paid_out_m: Some(out_m), reel_pull_n, robot_pull_n, ..Readings::default() };
         let mut torn = Torn::default();
-        (0..(seconds / 0.1) as usize).for_each(|_| torn.take(&readings, least(5.0, None), None, 0.1));
+        (0..(seconds / 0.1) as usize).for_each(|_| torn.take(&readings, Some(least(5.0, None)), None, 0.1));
         torn.found().is_some()
     }
 
@@ -106,10 +106,10 @@ mod tests {
         let mut torn = Torn::default();
         torn.take(&loose, None, None, 9.0);
         assert_eq!(torn.found(), None);
-        torn.take(&loose, least(3.0, None), None, 2.0);
+        torn.take(&loose, Some(least(3.0, None)), None, 2.0);
         let found = Some(Found { out_m: 0.0, needed_m: 3.0, by_encoder_alone: false });
         assert_eq!(torn.found(), found);
-        torn.take(&loose, least(0.0, None), None, 2.0);
+        torn.take(&loose, Some(least(0.0, None)), None, 2.0);
         assert_eq!(torn.found(), found);
     }
 
@@ -119,7 +119,7 @@ mod tests {
             let readings = Readings { paid_out_m: Some(out_m), reel_pull_n: pull_n, ..Readings::default() };
             let mut torn = Torn::default();
             (0..(seconds / 0.1) as usize)
-                .for_each(|_| torn.take(&readings, least(9.0, straight_m), None, 0.1));
+                .for_each(|_| torn.take(&readings, Some(least(9.0, straight_m)), None, 0.1));
             torn.found()
         };
         let alone = Found { out_m: 0.0, needed_m: 5.0, by_encoder_alone: true };
