@@ -24,7 +24,7 @@ use crate::{
     solver_kind::SolverKind,
 };
 use serde::{Deserialize, Serialize};
-use window::{Fitted, Node, Test, Window};
+use window::{Candidate, Fitted, Node, Test, Window};
 use world::{Odometry, Point, RangeSet, Station, StationId, Vector};
 
 /// Number of standard deviations above which a bias is detected. Least detectable errors are forecast for 3.29 in a
@@ -42,8 +42,6 @@ const LEAST_FIXES: usize = 10;
 /// The least lead of the station whose bias fits best over the next one, in the sum of squared residuals in units of
 /// their variances: the odds are then exp(lead / 2), about 400 to 1.
 const LEAST_LEAD: f64 = 12.0;
-/// The number of stations with the most significant biases that are compared: more would take too long for one cycle.
-const COMPARED: usize = 3;
 /// Number of standard deviations of an expected position within which the true one certainly lies.
 const SURE_SIGMAS: f64 = 4.0;
 /// Number of standard deviations of a station's residuals above which a known bias is estimated again: it has changed.
@@ -168,18 +166,6 @@ struct Known {
     bias_m: Option<Estimated>,
     /// Time from which the bias is estimated, seconds.
     from_s: f64,
-}
-
-/// The fit of the window with one more biased station.
-#[derive(Debug)]
-struct Trial {
-    station: usize,
-    /// Time from which the bias counts, seconds.
-    from_s: f64,
-    bias_m: Estimated,
-    /// See [`Window::misfit`].
-    misfit: f64,
-    window: Window,
 }
 
 /// Estimates the errors of the ranges from the last fixes of a mission. The same input gives the same estimates.
@@ -476,9 +462,9 @@ impl SessionCalibration {
     /// Detects a bias that begins in the window. At most one is detected in a cycle, the one that fits best, and never in
     /// half of the stations: then nothing shows which half is right.
     ///
-    /// The test counts the bias in the whole window, most of which may be from before it began. Therefore the window is
-    /// fitted again with a bias from its onset on, for each of the most significant stations. If two of them fit nearly
-    /// equally well, the next cycles decide.
+    /// The test counts the bias in the whole window, most of which may be from before it began. Therefore the stations are
+    /// compared by a bias from its onset on. If two of them explain nearly as much, the next cycles decide. The window is
+    /// fitted again with the bias that is found, which gives its size.
     fn detected(&mut self, fitted: &Fitted) -> Option<News> {
         let active = self.active();
         let is_testable = self.window.len() >= LEAST_FIXES && 2 * (active.len() + 1) < self.stations.len();
@@ -488,40 +474,24 @@ impl SessionCalibration {
             return None;
         }
         // A bias that cannot be told from a wrong speed of sound is not named, but it may be the true cause.
-        let tested =
-            |(station, test): (usize, &Option<Test>)| test.map(|test| (station, test.bias_m.score()));
-        let mut found: Vec<(usize, f64)> = fitted.tests.iter().enumerate().filter_map(tested).collect();
-        found.sort_by(|a, b| b.1.total_cmp(&a.1));
-        found.truncate(COMPARED);
-        let mut trials: Vec<Trial> =
-            found.iter().filter_map(|(station, _)| self.trial(*station, &active)).collect();
-        trials.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
-        let mut trials = trials.into_iter();
-        let best = trials.next()?;
-        let is_separable = separable_bias_m(fitted.tests[best.station]).is_some();
-        let is_clear = |next: &Trial| is_separable && next.misfit - best.misfit >= LEAST_LEAD;
-        if let Some(next) = trials.next().filter(|next| !is_clear(next)) {
+        let mut candidates = self.window.candidates(&active);
+        candidates.sort_by(|a, b| b.explained.total_cmp(&a.explained));
+        let mut candidates = candidates.into_iter();
+        let Candidate { station, from_s, explained } = candidates.next()?;
+        let is_separable = separable_bias_m(fitted.tests[station]).is_some();
+        let is_clear = |next: &Candidate| is_separable && explained - next.explained >= LEAST_LEAD;
+        if let Some(next) = candidates.next().filter(|next| !is_clear(next)) {
             let cycles = self.unclear.map_or(0, |(cycles, _)| cycles);
-            self.unclear =
-                Some((cycles + 1, [best.station, next.station].map(|index| self.stations[index].id)));
+            self.unclear = Some((cycles + 1, [station, next.station].map(|index| self.stations[index].id)));
             return None;
         }
         self.unclear = None;
-        let Trial { station, from_s, bias_m, window, .. } = best;
         let since_s = self.known[station].since_s.unwrap_or(self.window.first_s());
-        self.window = window;
+        let with: Vec<(usize, f64)> = active.into_iter().chain([(station, from_s)]).collect();
+        let refitted = self.window.fit(self.stations.len(), &with, self.turn)?;
+        let bias_m = refitted.biases_m.iter().find(|(index, _)| *index == station)?.1;
         self.known[station] = Known { since_s: Some(since_s), bias_m: Some(bias_m), from_s };
         Some(News::Biased { station: self.stations[station].id, bias_m, since_s })
-    }
-
-    /// Fits the window with one more biased station, from the time on that suits its residuals best.
-    fn trial(&self, station: usize, active: &[(usize, f64)]) -> Option<Trial> {
-        let mut window = self.window.clone();
-        let (from_s, _) = window.change(station);
-        let with: Vec<(usize, f64)> = active.iter().copied().chain([(station, from_s)]).collect();
-        let refitted = window.fit(self.stations.len(), &with, self.turn)?;
-        let bias_m = refitted.biases_m.iter().find(|(index, _)| *index == station)?.1;
-        Some(Trial { station, from_s, bias_m, misfit: window.misfit(), window })
     }
 
     /// Follows a detected bias until it is over.

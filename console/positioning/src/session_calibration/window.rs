@@ -85,12 +85,6 @@ fn weight(size: f64, sigma: f64) -> f64 {
     if size > HUBER * sigma { full * HUBER * sigma / size } else { full }
 }
 
-/// Twice the loss of a residual with this standard deviation: its square, and linear beyond [`HUBER`] (Huber 1964).
-fn loss(size: f64, sigma: f64) -> f64 {
-    let ratio = size / sigma;
-    if ratio > HUBER { HUBER * (2.0 * ratio - HUBER) } else { ratio * ratio }
-}
-
 impl Node {
     /// `excess_m` is an estimate of the length by which all ranges are too long, metres, if the time of emission is
     /// unknown.
@@ -163,6 +157,16 @@ pub(super) struct Test {
     pub bias_m: Estimated,
     /// Correlation of the bias with the scale, 0 to 1.
     pub correlation: f64,
+}
+
+/// A station that may have a bias.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Candidate {
+    pub station: usize,
+    /// Time from which the bias counts, seconds.
+    pub from_s: f64,
+    /// What the bias takes off the sum of the squared residuals, in units of their variances.
+    pub explained: f64,
 }
 
 /// The errors that fit the fixes best.
@@ -254,9 +258,7 @@ impl Window {
             let bias_m = before.get(*station).copied().flatten().map_or(0.0, |(bias_m, _)| bias_m);
             self.biases[*station] = Some((bias_m, *from_s));
         }
-        let mut columns = vec![Column::SCALE, Column::SLIP];
-        columns.extend(self.is_linear.then_some(Column::DRIFT));
-        columns.extend(active.iter().map(|(station, _)| Column::bias(*station)));
+        let columns = self.columns(active);
         let mut found = None;
         for _ in 0..ROUNDS {
             self.centre();
@@ -381,22 +383,37 @@ impl Window {
         system
     }
 
-    /// The sum of the squared residuals of ranges and motions, in units of their variances. Large ones count less, as in the
-    /// fit.
-    pub(super) fn misfit(&self) -> f64 {
-        let motions = self.nodes.iter().zip(self.nodes.iter().skip(1)).map(|(before, node)| {
-            let off_m = (node.at - before.at - node.moved * (1.0 - self.slip)).norm();
-            loss(off_m, node.moved_sigma_m)
-        });
-        let ranges = self.nodes.iter().map(|node| {
-            let stretch = self.stretch_at(node.t_s);
-            let heard = node.heard.iter().map(|heard| {
-                let bias_m = self.bias_at(heard.station, node.t_s).unwrap_or(0.0);
-                loss(node.seen(heard, stretch, bias_m).residual_m.abs(), heard.sigma_m)
-            });
-            heard.sum::<f64>()
-        });
-        motions.sum::<f64>() + ranges.sum::<f64>()
+    /// The stations that may have a bias, each from the time on that suits its residuals best, beside the active biases.
+    ///
+    /// Cost: that of one linear system for all stations together.
+    pub(super) fn candidates(&mut self, active: &[(usize, f64)]) -> Vec<Candidate> {
+        let columns = self.columns(active);
+        let quiet: Vec<(usize, f64)> = (0..self.biases.len())
+            .filter(|station| self.biases[*station].is_none())
+            .map(|station| (station, self.change(station).0))
+            .collect();
+        for (station, from_s) in &quiet {
+            self.biases[*station] = Some((0.0, *from_s));
+        }
+        let mut system = self.system(None);
+        system.eliminate();
+        let candidate = |(station, from_s): (usize, f64)| {
+            let (bias_m, sigma, _) = system.test(&columns, Column::bias(station))?;
+            Some(Candidate { station, from_s, explained: (bias_m / sigma).powi(2) })
+        };
+        let found = quiet.iter().copied().filter_map(candidate).collect();
+        for (station, _) in quiet {
+            self.biases[station] = None;
+        }
+        found
+    }
+
+    /// The errors that are free beside the positions.
+    fn columns(&self, active: &[(usize, f64)]) -> Vec<Column> {
+        let mut columns = vec![Column::SCALE, Column::SLIP];
+        columns.extend(self.is_linear.then_some(Column::DRIFT));
+        columns.extend(active.iter().map(|(station, _)| Column::bias(*station)));
+        columns
     }
 
     /// The bias that the ranges of a station have at a time; `None` before the time from which it counts.

@@ -97,7 +97,6 @@ pub(super) fn guide(word: &str) -> Guide {
                         .when(When::Held),
                     run("Drive back beside the tether, if the reel does not work. Asks first.", ActionId::DriveBack)
                         .when(When::Held),
-                    OTHER_PLANNER,
                     END,
                 ]
             },
