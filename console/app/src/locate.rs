@@ -198,7 +198,9 @@ fn located(
     let (mut tally, mut refused) = (Tally::default(), None);
     let doubts = task.locate(survey, |events: &[Event]| {
         tally.take(events);
-        events.iter().for_each(|event| ranging.apply(event.t_s, &event.kind));
+        for event in events {
+            ranging.apply(event.t_s, &event.kind);
+        }
         if let Some(log) = &mut log {
             log.keep(events);
         }

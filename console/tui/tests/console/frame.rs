@@ -128,7 +128,8 @@ fn the_pane_with_the_focus_is_marked_without_colour() {
 
 #[test]
 fn the_name_of_the_scenario_is_whole_and_the_unused_station_is_marked_at_every_size() {
-    for mut screen in [Screen::running(), Screen::held(), ended().0] {
+    for begun in [Screen::running, Screen::held, || ended().0] {
+        let mut screen = begun();
         let name = "cover-unknown-columns";
         if let Some(about) = &mut screen.model.live.run.about {
             name.clone_into(&mut about.scenario);
