@@ -8,6 +8,7 @@ mod limits;
 mod odometry;
 mod outcome;
 mod robust;
+mod sessions;
 mod setup;
 mod significance;
 mod spiral;
@@ -16,5 +17,12 @@ mod table3;
 use crate::study::Study;
 
 /// The studies.
-pub(crate) const STUDIES: &[Study] =
-    &[table3::STUDY, spiral::STUDY, limits::STUDY, robust::STUDY, filter::STUDY, integrity::STUDY];
+pub(crate) const STUDIES: &[Study] = &[
+    table3::STUDY,
+    spiral::STUDY,
+    limits::STUDY,
+    robust::STUDY,
+    filter::STUDY,
+    integrity::STUDY,
+    sessions::STUDY,
+];

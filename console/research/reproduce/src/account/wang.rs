@@ -224,4 +224,11 @@ const ITEMS: &[Item] = &[
         "tankops reproduce integrity",
         "not in the paper",
     ),
+    item(
+        "Beyond",
+        "a wrong speed of sound and a station that goes wrong under way, found by the session",
+        Ours,
+        "tankops reproduce session-calibration",
+        "not in the paper",
+    ),
 ];

@@ -58,6 +58,11 @@ const MOST_BEYOND: f64 = 1e-5;
 /// The largest level of the median geometry without a fault, relative to the error that one fix in 1000 exceeds.
 const MOST_LEVEL_TO_ERROR: f64 = 2.5;
 
+/// The share of the fixes that must name the right station if it is wrong by twice the detectable error, from this number of
+/// stations on.
+const LEAST_NAMED: f64 = 0.95;
+const NAMED_FROM: usize = 5;
+
 /// The error of a station.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Fault {
@@ -223,7 +228,11 @@ fn run(job: &Job<'_>) -> Result<Vec<Row>> {
         for (geometry, tally) in listed {
             rows.extend(tally.rows(&job.block(&geometry.id, method, ""), *fault));
         }
-        totals.extend(total_rows(&job.block(ALL, method, ""), &of_case, *fault));
+        let block = job.block(ALL, method, "");
+        totals.extend(total_rows(&block, &of_case, *fault));
+        if *fault == Fault::TwiceDetectable {
+            totals.extend(named_rows(&block, &cases, &of_case));
+        }
     }
     // The totals come first: they are the result.
     totals.extend(rows);
@@ -260,6 +269,26 @@ fn total_rows(block: &Block<'_>, of_case: &[Tally], fault: Fault) -> Vec<Row> {
         block.row("level_to_error_max", ratios.max(), "", ratios.len()),
     ]);
     rows
+}
+
+/// For each number of stations that can name a wrong one, how often they name the right one; the note states whether that is
+/// enough, and how often the best test would.
+fn named_rows(block: &Block<'_>, cases: &[Geometry], of_case: &[Tally]) -> Vec<Row> {
+    let mut numbers: Vec<usize> = cases.iter().map(|geometry| geometry.stations.len()).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    let row = |n: usize| {
+        let all = cases.iter().zip(of_case).filter(|(geometry, _)| geometry.stations.len() == n);
+        let tally = Tally::join(all.map(|(_, tally)| tally));
+        let rate = |part: usize| part as f64 / tally.cycles as f64;
+        let (named, best) = (rate(tally.named), rate(tally.likeliest));
+        let met = if named >= LEAST_NAMED { "met" } else { "NOT MET" };
+        let note =
+            format!("at least {LEAST_NAMED} required: {met}; the best test names {:.1} %", 100.0 * best);
+        (tally.cycles > 0)
+            .then(|| block.row(&format!("named_rate_{n}_stations"), named, "", tally.cycles).note(note))
+    };
+    numbers.into_iter().filter(|n| *n >= NAMED_FROM).filter_map(row).collect()
 }
 
 /// One draw; without cycles in a geometry that does not suit the method.
@@ -420,6 +449,19 @@ mod tests {
         assert!(note(1, Fault::None, "beyond_rate").ends_with(": NOT MET"));
         assert!(note(1, Fault::Any, "beyond_rate").ends_with(": met"), "one in ten is allowed");
         assert_eq!(note(0, Fault::None, "level_to_error_median"), "at most 2.5 allowed: met");
+    }
+
+    #[test]
+    fn the_share_of_named_stations_is_judged_for_each_number_of_stations() {
+        let (cases, tally) = (geometries(), |named| Tally { cycles: 100, named, ..Tally::default() });
+        let of_case: Vec<Tally> =
+            cases.iter().map(|case| tally(if case.stations.len() == 5 { 90 } else { 97 })).collect();
+        let block = Block { table: "integrity", case: ALL, method: "ranges", note: "" };
+        let rows = named_rows(&block, &cases, &of_case);
+        let told: Vec<(&str, bool)> =
+            rows.iter().map(|row| (row.metric.as_str(), row.note.contains("NOT MET"))).collect();
+        let expected = [5, 6, 7, 8].map(|n| (format!("named_rate_{n}_stations"), n == 5));
+        assert_eq!(told, expected.each_ref().map(|(metric, is_missed)| (metric.as_str(), *is_missed)));
     }
 
     #[test]
