@@ -110,14 +110,16 @@ impl Chart {
     }
 
     /// Everything within `reach_m` metres of a position that the hull must not touch. Obstacles in sight are placed where
-    /// they are seen. A moving obstacle that has gone out of sight is left out.
-    pub(crate) fn solids(&self, at: Point, reach_m: f64) -> Vec<Solid<'_>> {
+    /// they are seen. A moving obstacle that has gone out of sight is left out, as are the no-go zones with the names in
+    /// `leaving`.
+    pub(crate) fn solids(&self, at: Point, reach_m: f64, leaving: &[String]) -> Vec<Solid<'_>> {
         let is_seen = |id: ObstacleId| self.in_sight.iter().any(|(seen, _)| *seen == id);
         let seen = self.in_sight.iter().map(|(_, shape)| (shape, true));
         let near = self.map.within(at, reach_m);
         let charted = near.into_iter().filter(|near| !is_seen(near.id) && !self.is_gone(near.index));
         let charted = charted.map(|near| (&self.world.obstacles[near.index].shape, false));
-        let zones = self.world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo);
+        let is_closed = |zone: &&Zone| zone.kind == ZoneKind::NoGo && !leaving.contains(&zone.name);
+        let zones = self.world.zones.iter().filter(is_closed);
         let shapes = seen.chain(charted).chain(zones.map(|zone| (&zone.shape, false)));
         let near_shapes = shapes.filter(|(shape, _)| shape.distance_m(at) < reach_m);
         let mut solids: Vec<_> =

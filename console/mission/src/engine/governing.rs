@@ -42,7 +42,9 @@ impl Known {
         if is_free && governor::is_within_sight(momentum, command.drive, &here) {
             return command;
         }
-        let solids = self.chart.solids(here.pose.position, reach_m);
+        // The way back may lead deeper into a zone before it leads out of it.
+        let leaving = if self.phase.is_return() { self.breached.as_slice() } else { &[] };
+        let solids = self.chart.solids(here.pose.position, reach_m, leaving);
         let around = Surroundings::of(&solids, &here);
         let drive = governor::governed(momentum, command.drive, &here, &around);
         rounded_command(Command { drive, ..command })

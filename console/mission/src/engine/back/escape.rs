@@ -24,7 +24,7 @@ impl Known {
         }
         let reach_m = (chart.depth_m(here) + room_m + SPARE_M).max(LEAST_REACH_M) + room_m;
         let governed = self.as_governed();
-        let solids = chart.solids(here, reach_m + governed.limits.radius_m);
+        let solids = chart.solids(here, reach_m + governed.limits.radius_m, &[]);
         let around = Surroundings::of(&solids, &governed);
         let step_m = reach_m / f64::from(CELLS);
         let cells = (-CELLS..=CELLS).flat_map(|x| (-CELLS..=CELLS).map(move |y| (x, y)));

@@ -188,6 +188,24 @@ fn a_hull_in_a_zone_that_closes_the_way_round_leaves_it_along_the_tether() {
     assert_eq!(flight.ended(), Some(Outcome::Aborted), "{:?}", flight.mission.phase());
 }
 
+/// Every way out of the zone first leads deeper into it. The robot brakes at walls meanwhile, and at other zones.
+#[test]
+fn a_hull_at_the_far_side_of_a_zone_may_go_deeper_on_its_way_out() {
+    let mut flight = Flight::new(tethered(20.0));
+    flight.tick(&[Order::Start]);
+    flight.fly(80);
+    let here = flight.pose.position;
+    let vertices = world::shape::rectangle(Point::new(here.x - 2.0, -20.0), Point::new(here.x + 0.1, 20.0));
+    let shape = Shape::Polygon { vertices };
+    flight.mission.known.chart.draw(Zone { name: "wet".into(), kind: ZoneKind::NoGo, shape });
+    flight.tick(&[]);
+    assert_eq!(flight.held_by(), Some(&HoldReason::ZoneBreached { zone: "wet".into() }));
+    flight.fly(10);
+    assert_eq!(refusal(&flight.tick(&[Order::DriveBack])), None);
+    flight.fly(300);
+    assert_eq!(flight.ended(), Some(Outcome::Aborted), "{:?}", flight.mission.phase());
+}
+
 #[test]
 fn an_obstacle_found_on_the_way_back_is_gone_round() {
     let mut flight = held(config(), 100);
