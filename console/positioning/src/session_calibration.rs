@@ -169,6 +169,34 @@ struct Known {
 }
 
 /// Estimates the errors of the ranges from the last fixes of a mission. The same input gives the same estimates.
+///
+/// ```
+/// use positioning::{
+///     Aggregation, MotionNoise, Near, News, RangeNoise, SessionCalibration, SessionConfig, Timing,
+/// };
+/// use world::{Odometry, Point, RangeSet, Station, StationId};
+/// let places = [(20.0, 0.0), (10.0, 17.0), (-10.0, 17.0), (-20.0, 0.0), (-10.0, -17.0), (10.0, -17.0)];
+/// let stations: Vec<Station> = (1..).zip(places)
+///     .map(|(id, (x, y))| Station { id: StationId(id), name: String::new(), position: Point::new(x, y) })
+///     .collect();
+/// let ways = (Aggregation::Mean, RangeNoise::Gaussian { sigma_ratio: 0.005 }, Timing::default());
+/// let motion = MotionNoise::default();
+/// let mut session = SessionCalibration::new(SessionConfig::default(), &stations, ways, motion);
+/// let (mut at, mut named) = (Point::new(-15.0, -4.0), Vec::new());
+/// for second in 0..60 {
+///     // All ranges are 2 % too long, and those of the third station by 0.5 m as well from second 30 on.
+///     let own_m = |id| if id == StationId(3) && second >= 30 { 0.5 } else { 0.0 };
+///     let range_m = |s: &Station| (at - s.position).norm() * 1.02 + own_m(s.id);
+///     let sets: Vec<RangeSet> =
+///         stations.iter().map(|s| RangeSet { station: s.id, ranges_m: vec![range_m(s)] }).collect();
+///     let near = Near { at, sigma_m: 0.1, heading_sigma_rad: 0.01 };
+///     named.extend(session.take(&sets, near, f64::from(second)));
+///     at.x += 0.5;
+///     session.predict(&Odometry { forward_m: 0.5, ..Odometry::default() }, 0.0);
+/// }
+/// assert!((session.scale().value - 0.02).abs() < 0.002);
+/// assert!(matches!(named[..], [News::Biased { station: StationId(3), .. }]));
+/// ```
 #[derive(Debug, Clone)]
 pub struct SessionCalibration {
     config: SessionConfig,
