@@ -46,8 +46,8 @@ pub(super) struct Drive {
     /// How often the robot would have driven onto its own cable on the way home after the hold, and on the taut line; `None` if
     /// it was not held.
     pub times_over_home: Option<(usize, usize)>,
-    /// Whether the mission refuses the way home after the hold, because there is no room beside the cable; `None` if the robot
-    /// was not held.
+    /// Whether the mission refused the order to drive home after the hold, because the hull did not fit beside the cable; `None`
+    /// if the robot was not held.
     pub is_home_refused: Option<bool>,
     /// How often the cable counted as caught.
     pub snags: usize,

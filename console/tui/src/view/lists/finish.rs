@@ -21,7 +21,7 @@ pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
     let name = |name: &str| text::column(name, NAME.min(room));
     let entry = |title: &str, role: Role, words: &str| -> Vec<Row> {
         let room = room.saturating_sub(NAME);
-        // Why there is no way back is not said anywhere else on a list whose first entry is selected.
+        // While the first entry is selected, only this line gives the reason for a missing way back: it is shown whole.
         let lines = match role {
             Role::Dim if text::width(words) > room => text::wrap(words, room),
             _ => vec![text::fit(words, room)],
