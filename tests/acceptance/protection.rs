@@ -209,10 +209,10 @@ fn a_clock_that_jumps_is_covered_by_the_level() {
     bench.prove(run);
 }
 
-/// The shipped scenario with stations that exchange pulses: before the start, and during the hold for an outage. The speed of
+/// The shipped scenario with stations that exchange pulses: before the start, during the hold for an outage, and after the run. The speed of
 /// sound is wrong by 2 %.
 #[test]
-fn pulses_before_the_start_and_during_a_hold_measure_speed_of_sound_and_clocks() {
+fn pulses_before_during_and_after_the_run_measure_speed_of_sound_and_clocks() {
     let bench = Bench::new();
     let flown = bench.fly(&scenario("station-pulses.toml"), &[]);
     assert_eq!(flown.code, Some(0), "{flown:?}");
@@ -222,6 +222,12 @@ fn pulses_before_the_start_and_during_a_hold_measure_speed_of_sound_and_clocks()
     assert_eq!(tests[0]["phase"], "before", "{}", tests[0]);
     let held: Vec<&Value> = tests.iter().filter(|test| test["phase"] == "held").copied().collect();
     assert!(held.iter().any(|test| number(&test["t_s"]) >= 480.0), "{tests:?}");
+    let last = tests[tests.len() - 1];
+    assert_eq!(last["phase"], "after", "{last}");
+    // The robot stands still for 5 s before the stations exchange their last pulses.
+    let awaited = of_kind(&events, "pulses_awaited");
+    let waited_s = number(&last["t_s"]) - number(&awaited[0]["t_s"]);
+    assert!(awaited.len() == 1 && (5.0..7.0).contains(&waited_s), "{waited_s} s: {awaited:?}");
     for test in &tests {
         let scale = &test["test"]["scale"];
         let off = (number(&scale["value"]) - 0.02).abs();

@@ -126,17 +126,22 @@ pub struct PulseRecord {
     pub t_s: Option<f64>,
 }
 
-/// States for which part of a run the stations are known not to be as surveyed, as a sentence without a full stop: from
-/// a pulse test that contradicts the survey until a later one agrees with it. `None` if no test contradicts it.
+/// States for which part of a run the stations may not have been as surveyed, as a sentence without a full stop: around
+/// each pulse test that contradicts the survey, from the test before it that agreed, or from the start, until the next one
+/// that agrees. `None` if no test contradicts the survey.
 pub fn not_as_surveyed(tests: &[PulseRecord]) -> Option<String> {
     let mut spans: Vec<(f64, Option<f64>)> = Vec::new();
+    let mut agreed_s = 0.0;
     for test in tests {
         let t_s = test.t_s.unwrap_or(0.0);
         match spans.last_mut() {
             Some((_, until_s @ None)) if test.agrees => *until_s = Some(t_s),
             Some((_, None)) => {}
-            _ if test.contradicts => spans.push((t_s, None)),
+            _ if test.contradicts => spans.push((agreed_s, None)),
             _ => {}
+        }
+        if test.agrees {
+            agreed_s = t_s;
         }
     }
     let words = |(from_s, until_s): &(f64, Option<f64>)| {
@@ -146,8 +151,8 @@ pub fn not_as_surveyed(tests: &[PulseRecord]) -> Option<String> {
     let spans: Vec<String> = spans.iter().map(words).collect();
     (!spans.is_empty()).then(|| {
         format!(
-            "the stations were not as surveyed {}: the stated position errors, protection levels and guaranteed floor of \
-             this time do not count; survey the stations, then scan this floor again",
+            "the stations may not have been as surveyed {}: the stated position errors, protection levels and guaranteed floor of \
+             this time do not count; survey the stations, then rescan this floor",
             spans.join(" and ")
         )
     })
@@ -339,11 +344,14 @@ mod tests {
         let after = |integrity| (90.0, tested(PulsePhase::After, 0.02, integrity));
         assert_eq!(said(&[before(Integrity::Ok), failed.clone(), after(Integrity::Ok)]), None);
         let all = said(&[before(Integrity::Alarm), failed.clone()]).unwrap();
-        assert!(all.starts_with("the stations were not as surveyed from T+00:00:00 to the end:"), "{all}");
+        assert!(
+            all.starts_with("the stations may not have been as surveyed from T+00:00:00 to the end:"),
+            "{all}"
+        );
         let first = said(&[before(Integrity::Alarm), failed, after(Integrity::Ok)]).unwrap();
         assert!(first.contains("from T+00:00:00 to T+00:01:30:"), "{first}");
         let last = said(&[before(Integrity::Ok), after(Integrity::Alarm)]).unwrap();
-        assert!(last.contains("from T+00:01:30 to the end:"), "{last}");
+        assert!(last.contains("from T+00:00:00 to the end:"), "{last}");
     }
 
     #[test]

@@ -156,9 +156,10 @@ pub struct Locating {
     /// [`SolverKind::Differences`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clocks: Option<OwnClocks>,
-    /// Whether the stations exchange pulses before the start and while the robot stands still.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub has_pulses: bool,
+    /// The stations exchange pulses before the start, and whenever the robot has stood still for this long, seconds; `None`
+    /// if they exchange none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pulse_rest_s: Option<f64>,
 }
 
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "signature required by serde")]
@@ -180,7 +181,7 @@ impl Default for Locating {
             risk: None,
             session: None,
             clocks: None,
-            has_pulses: false,
+            pulse_rest_s: None,
         }
     }
 }

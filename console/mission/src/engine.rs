@@ -13,6 +13,7 @@ mod candidate;
 mod checking;
 mod course;
 mod driving;
+mod finishing;
 mod floor;
 mod fork;
 mod governing;
@@ -239,6 +240,7 @@ impl Mission {
             task: &self.known.task,
             plan_left_m: back.map_or_else(|| self.known.way_left_m(plan), |back| Some(back.left_m(here))),
             is_back: back.is_some_and(|back| back.is_done(here)),
+            is_finishing: self.known.finishing.is_some(),
             breached,
             in_zone: self.known.breached.first().map(String::as_str),
             scanned: self.known.floor.coverage.fraction_reachable(),

@@ -231,6 +231,11 @@ pub enum EventKind {
         /// The result.
         test: PulseTest,
     },
+    /// The task is done, or the robot is back; it stands still until the stations have exchanged their last pulses.
+    PulsesAwaited {
+        /// Mission time at which the mission ends without them, seconds.
+        until_s: f64,
+    },
     /// The pulses of the stations give no calibration.
     PulsesFailed {
         /// The part of the run.

@@ -108,6 +108,11 @@ impl Locator {
         }
     }
 
+    /// Sets whether the task is done, so that pulses from now on are those after the run.
+    pub(crate) fn end_ranging(&mut self, has_ended: bool) {
+        self.pulses.note_end(has_ended);
+    }
+
     /// Increases the uncertainty of the pose after an unmeasured motion of at most `most_m` metres and `most_rad`
     /// radians.
     pub fn wander(&mut self, most_m: f64, most_rad: f64) {

@@ -6,7 +6,7 @@ use crate::{
     linear::conditioning,
     quality::{assess_excess, integrity_of},
 };
-use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
+use nalgebra::{Matrix3, Vector3, Vector4};
 use world::{Point, Station};
 
 /// The number of stations needed: two for the position, one for the emission time, one to exclude mirror images.
@@ -14,7 +14,7 @@ const NEEDED: usize = 4;
 /// The largest number of steps before the search gives up; six are usual.
 const MAX_ITERATIONS: usize = 60;
 /// The length of a step, metres, below which the search ends.
-const SETTLED_M: f64 = 1e-9;
+const SETTLED_M: f64 = 1e-6;
 
 /// Least squares on ranges that are all too long by one unknown length, such as arrival times without the emission
 /// time. Position and length are both free, and the covariance of the position includes the uncertainty of the
@@ -91,13 +91,21 @@ fn starts(anchors: &[Anchor], prior: Option<Prior>) -> impl Iterator<Item = Poin
 
 /// Solves the equations that are linear in the position, the excess, and the difference of their squares.
 fn squared(anchors: &[Anchor]) -> Option<Point> {
-    let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
+    // Relative to the mean, the equation of each anchor has no constant, and the numbers are of similar size.
+    let by = 1.0 / anchors.len() as f64;
+    let row = |anchor: &Anchor| {
+        let Anchor { at, range_m, .. } = anchor;
+        Vector4::new(at.x, at.y, -range_m, 0.5 * (at.coords.norm_squared() - range_m * range_m))
+    };
+    let mean = anchors.iter().map(row).sum::<Vector4<f64>>() * by;
+    let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
     for anchor in anchors {
-        let row = Vector4::new(2.0 * anchor.at.x, 2.0 * anchor.at.y, -2.0 * anchor.range_m, 1.0);
-        normal += row * row.transpose();
-        right += row * (anchor.at.coords.norm_squared() - anchor.range_m.powi(2));
+        let row = row(anchor) - mean;
+        let unknown = row.xyz();
+        normal += unknown * unknown.transpose();
+        right += unknown * row.w;
     }
-    let solved = normal.lu().solve(&right)?;
+    let solved = normal.cholesky()?.solve(&right);
     Some(Point::new(solved.x, solved.y)).filter(|at| at.iter().all(|c| c.is_finite()))
 }
 
@@ -161,10 +169,11 @@ fn slope(anchors: &[Anchor], state: &Vector3<f64>) -> Slope {
     let mut slope = Slope { cost: 0.0, gradient: Vector3::zeros(), curvature: Matrix3::zeros() };
     for anchor in anchors {
         let view = anchor.view_from(Point::new(state.x, state.y));
-        let error = (view.residual_m - state.z) / view.sigma_m;
-        let by = Vector3::new(view.direction.x, view.direction.y, 1.0) / view.sigma_m;
+        let per_sigma = 1.0 / view.sigma_m;
+        let error = (view.residual_m - state.z) * per_sigma;
         // The sigma also grows with the distance.
-        let by = by + Vector3::new(view.direction.x, view.direction.y, 0.0) * (error / view.growth_m);
+        let along = view.direction * (per_sigma + error / view.growth_m);
+        let by = Vector3::new(along.x, along.y, per_sigma);
         slope.cost += error * error;
         slope.gradient -= by * error;
         slope.curvature += by * by.transpose();

@@ -35,6 +35,9 @@ const SELECTIONS: f64 = 2.0;
 const MOST_CURVED: f64 = 0.25;
 /// The length of a step, metres, below which its curvature does no harm.
 const NEAR_M: f64 = 0.05;
+/// The length of a step, as a share of the distance to the nearest station, up to which the second order suffices: the third
+/// changes the step by less than 1 in 500.
+const SHORT: f64 = 0.05;
 /// The number of stations above the number of unknowns that a level needs: one for the fault, and one to exclude the
 /// mirror image of the remaining stations.
 const SPARE: usize = 2;
@@ -73,6 +76,9 @@ pub enum Unprotected {
     /// The ranges fit neither sound stations nor a single wrong one.
     #[error("the ranges fit no single wrong station")]
     Contradiction,
+    /// The session calibration has found two wrong stations at once.
+    #[error("two stations were wrong at once, and it is uncertain which two")]
+    TwoWrong,
     /// The last cycles gave no fix.
     #[error("the last cycles gave no fix")]
     Silent,
@@ -190,11 +196,32 @@ struct Row {
     variance: f64,
     /// 1 / variance.
     weight: f64,
+    /// 1 / distance, per metre.
+    per_m: f64,
     /// Derivatives of the range by x, y and the common length.
     by: Vector3<f64>,
 }
 
 impl Row {
+    /// Returns the pull of the range on a position that is a step away from the fix.
+    fn pull(&self, fix: Point, step: &Vector3<f64>) -> Vector3<f64> {
+        let away = fix + step.xy() - self.station;
+        let distance_m = away.norm().max(f64::MIN_POSITIVE);
+        let pull = (self.range_m - distance_m - self.by.z * step.z) * self.weight;
+        let by_metre = pull / distance_m;
+        Vector3::new(away.x * by_metre, away.y * by_metre, self.by.z * pull)
+    }
+
+    /// Returns the same for a step that is short beside the distance: to the second order, without a root or a quotient.
+    fn pull_near(&self, step: &Vector3<f64>) -> Vector3<f64> {
+        let (along, level) = (self.by.xy(), step.xy());
+        let ahead_m = along.dot(&level);
+        let bend_m = 0.5 * (level.norm_squared() - ahead_m * ahead_m) * self.per_m;
+        let pull = (self.residual_m - ahead_m - bend_m - self.by.z * step.z) * self.weight;
+        let turned = along + (level - along * ahead_m) * self.per_m;
+        Vector3::new(turned.x * pull, turned.y * pull, self.by.z * pull)
+    }
+
     /// Returns the range with the error that it has at the fix.
     fn anchor(&self) -> Anchor {
         let sigma_m = self.variance.sqrt();
@@ -232,12 +259,22 @@ impl Seen {
             let station = stations.iter().find(|station| station.id == residual.station)?.position;
             let away = fix.position - station;
             let distance_m = away.norm();
-            let by = Vector3::new(away.x / distance_m, away.y / distance_m, by_length);
+            let per_m = 1.0 / distance_m;
+            let by = Vector3::new(away.x * per_m, away.y * per_m, by_length);
             let variance = residual.sigma_m.powi(2);
             let weight = 1.0 / variance;
             information += by * by.transpose() * weight;
             let (residual_m, range_m) = (residual.residual_m, residual.residual_m + distance_m);
-            rows.push(Row { id: residual.station, station, range_m, residual_m, variance, weight, by });
+            rows.push(Row {
+                id: residual.station,
+                station,
+                range_m,
+                residual_m,
+                variance,
+                weight,
+                per_m,
+                by,
+            });
         }
         let covariance = information.try_inverse()?;
         covariance.iter().all(|number| number.is_finite()).then_some(Self {
@@ -300,17 +337,11 @@ impl Seen {
 
     /// Returns the pull of all ranges but one on a position that is a step away from the fix.
     fn gradient_without(&self, index: usize, step: &Vector3<f64>) -> Vector3<f64> {
-        let at = self.position + step.xy();
-        let length_m = if self.is_emission_free { step.z } else { 0.0 };
-        let mut gradient = Vector3::zeros();
-        for row in self.rows[..index].iter().chain(&self.rows[index + 1..]) {
-            let away = at - row.station;
-            let distance_m = away.norm().max(f64::MIN_POSITIVE);
-            let pull = (row.range_m - distance_m - length_m) * row.weight;
-            let by_metre = pull / distance_m;
-            gradient += Vector3::new(away.x * by_metre, away.y * by_metre, row.by.z * pull);
-        }
-        gradient
+        let shortest_m = 1.0 / self.rows.iter().map(|row| row.per_m).fold(0.0, f64::max);
+        let is_short = step.xy().norm_squared() <= (SHORT * shortest_m).powi(2);
+        let pulls = |row: &Row| if is_short { row.pull_near(step) } else { row.pull(self.position, step) };
+        let [before, after] = [&self.rows[..index], &self.rows[index + 1..]];
+        before.iter().map(pulls).sum::<Vector3<f64>>() + after.iter().map(pulls).sum::<Vector3<f64>>()
     }
 }
 

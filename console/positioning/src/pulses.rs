@@ -88,6 +88,9 @@ pub enum PulseError {
         /// The longest possible length, metres; see [`longest_pulse_m`].
         most_m: f64,
     },
+    /// The stations were to exchange pulses, but none came in time.
+    #[error("none came in time; check that the stations send pulses to each other")]
+    Missing,
     /// The pulses do not determine the speed of sound beside the clocks.
     #[error(
         "the pulses do not separate the speed of sound from the clocks; let every station send and every other hear"
@@ -221,7 +224,8 @@ impl PulseTest {
 ///
 /// Between two tests, speed of sound and clocks change linearly; before the first and after the last one, they stay. The
 /// offsets of a test are relative to the mean of its stations, so those of all tests are made relative to the mean of the
-/// stations that took part in every test. A station that took no part in one of two tests keeps the offset of the other.
+/// stations that took part in every test. A station that took no part in one of two tests keeps the offset of the other. A
+/// station that took part in none has an unknown clock.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct PulseSeries {
     /// The tests with their times, seconds.
@@ -229,9 +233,11 @@ pub struct PulseSeries {
 }
 
 impl PulseSeries {
-    /// Removes the errors at a time, seconds, from sets of ranges of a robot: `(range - offset) / (1 + scale)`.
-    pub fn correct(&self, t_s: f64, sets: &mut [RangeSet]) {
+    /// Removes the errors at a time, seconds, from sets of ranges of a robot: `(range - offset) / (1 + scale)`. If the tests
+    /// give clocks, the sets of stations without one are removed.
+    pub fn correct(&self, t_s: f64, sets: &mut Vec<RangeSet>) {
         let Some((before, after, share)) = self.around(t_s) else { return };
+        sets.retain(|set| self.has_clock(set.station));
         let between = |before: f64, after: f64| (1.0 - share) * before + share * after;
         let by = 1.0 / (1.0 + between(before.scale.value, after.scale.value));
         let datums_m = [before, after].map(|test| self.datum_m(test));
@@ -246,6 +252,12 @@ impl PulseSeries {
             };
             set.ranges_m.iter_mut().for_each(|range_m| *range_m = (*range_m - offset_m) * by);
         }
+    }
+
+    /// Whether the clock of a station is known, or none is.
+    fn has_clock(&self, station: StationId) -> bool {
+        let offsets_m = || self.tests.iter().flat_map(|(_, test)| &test.offsets_m);
+        offsets_m().next().is_none() || offsets_m().any(|(id, _)| *id == station)
     }
 
     /// The mean offset in a test of the stations that took part in every test, metres.

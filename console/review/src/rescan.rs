@@ -64,7 +64,7 @@ fn continued(run: &PastRun) -> anyhow::Result<Continued<'_>> {
     let journal_sha256 = run.files.journal_sha256.as_deref();
     let journal_sha256 =
         journal_sha256.with_context(|| format!("run {}: its journal has no digest", run.name))?;
-    Ok(Continued { name: &run.name, journal_sha256 })
+    Ok(Continued { name: &run.name, journal_sha256, ended_s: run.summary.mission_time_s.unwrap_or(0.0) })
 }
 
 /// The next scan after some runs, for the console: a re-scan of the floor that they missed or, after a survey, a scan of

@@ -82,7 +82,7 @@ pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig, stations: &[Station
         risk: risk(section),
         session: session(section, calibrate_sound_speed?, stations.len()),
         clocks: clocks::expected(ae.clocks),
-        has_pulses: ae.pulse_rest_s.is_some(),
+        pulse_rest_s: ae.pulse_rest_s,
         repetitions: ae.repetitions,
         needs_line_of_sight: !matches!(behind, BehindColumns::Heard | BehindColumns::Creeping),
     })

@@ -13,6 +13,8 @@ pub struct Continued<'a> {
     /// The SHA-256 of the run's journal, in hexadecimal. A report uses it to verify that both runs are of the same
     /// floor.
     pub journal_sha256: &'a str,
+    /// Mission time at its end, seconds.
+    pub ended_s: f64,
 }
 
 /// Faults of the simulated tether that happened in one run, and are not planned for its re-scan.
@@ -29,8 +31,9 @@ pub fn left_out_of_rescan(scenario_toml: &str) -> Vec<String> {
 
 /// Changes the scenario of a past run into a mission that scans these boxes, each given by its south-west and
 /// north-east corners in metres. Obstacles that were found and zones that were drawn during the run become part of the
-/// drawing. `runs` are the runs that missed the areas in the boxes. Faults of the simulated tether are left out
-/// ([`left_out_of_rescan`]).
+/// drawing. `runs` are the runs that missed the areas in the boxes, the last one last. Faults of the simulated tether are left
+/// out ([`left_out_of_rescan`]). Faults of stations go on where the last run ended: a station that was wrong then is wrong from
+/// the start.
 ///
 /// # Errors
 /// The scenario of the run cannot be parsed because its journal was changed.
@@ -66,11 +69,47 @@ pub fn rescan(
             tether.remove(key);
         }
     }
+    continue_station_faults(&mut document, runs.last().map_or(0.0, |run| run.ended_s));
     put_on_drawing(&mut document, found);
     for zone in drawn {
         add_zone(&mut document, zone);
     }
     Ok(document.to_string())
+}
+
+/// Moves the faults of stations by the duration of the last run, seconds. Those that were over are removed.
+fn continue_station_faults(document: &mut DocumentMut, ended_s: f64) {
+    let lasts = |table: &mut dyn TableLike| {
+        let later = |table: &dyn TableLike, key: &str| {
+            let number =
+                table.get(key).and_then(|item| item.as_float().or(item.as_integer().map(|n| n as f64)));
+            number.map(|t_s| (t_s - ended_s).max(0.0))
+        };
+        let [from_s, to_s] = ["from_s", "to_s"].map(|key| later(table, key));
+        for (key, t_s) in [("from_s", from_s), ("to_s", to_s)] {
+            if let Some(t_s) = t_s {
+                table.insert(key, value(t_s));
+            }
+        }
+        to_s.is_none_or(|to_s| to_s > 0.0)
+    };
+    let ae = document.get_mut("ae").and_then(Item::as_table_like_mut);
+    match ae.and_then(|ae| ae.get_mut("faults")) {
+        Some(Item::ArrayOfTables(tables)) => {
+            let are_over: Vec<bool> = tables.iter_mut().map(|table| !lasts(table)).collect();
+            for index in (0..are_over.len()).rev().filter(|index| are_over[*index]) {
+                tables.remove(index);
+            }
+        }
+        Some(Item::Value(Value::Array(list))) => {
+            let is_over = |one: &mut Value| one.as_inline_table_mut().is_some_and(|table| !lasts(table));
+            let are_over: Vec<bool> = list.iter_mut().map(is_over).collect();
+            for index in (0..are_over.len()).rev().filter(|index| are_over[*index]) {
+                list.remove(index);
+            }
+        }
+        _ => {}
+    }
 }
 
 /// Marks as known those obstacles in the scenario that were found.
@@ -124,8 +163,23 @@ fn numbers([low, high]: &[Point; 2]) -> Value {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::*;
+
+    #[test]
+    fn faults_of_stations_go_on_where_the_last_run_ended() {
+        let text = "[ae]\nfaults = [{ station = \"A\", from_s = 600, to_s = 7200.0 }, { station = \"B\", from_s = 1, to_s = 9 }]\n";
+        for text in
+            [text, "[[ae.faults]]\nfrom_s = 600.0\nto_s = 7200\n[[ae.faults]]\nfrom_s = 1\nto_s = 9\n"]
+        {
+            let mut document: DocumentMut = text.parse().unwrap();
+            continue_station_faults(&mut document, 1000.0);
+            let after = document.to_string();
+            assert!(after.contains("from_s = 0.0") && after.contains("to_s = 6200.0"), "{after}");
+            assert!(!after.contains("to_s = 9") && after.matches("to_s").count() == 1, "{after}");
+        }
+    }
 
     #[test]
     fn faults_of_the_tether_in_the_old_run_are_named() {

@@ -418,7 +418,7 @@ static FAULTS: &[Key] = &[
     key("station", "", Kind::Text),
     number("from_s", "s", at_least(0.0)),
     number("to_s", "s", above(0.0)),
-    number("excess_range_m", "m", above(0.0).up_to(1000.0)).or_none("the station is silent"),
+    number("excess_range_m", "m", at_least(-1000.0).up_to(1000.0)).or_none("the station is silent"),
 ];
 
 /// A pull of a cable, newtons. Below it, a figure with one decimal would say nothing.

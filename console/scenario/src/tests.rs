@@ -917,7 +917,7 @@ fn an_unknown_time_of_emission_uses_differences_and_clocks_of_their_own_are_pass
 fn stations_that_exchange_pulses_are_simulated_and_expected() {
     let with = differences("integrity_risk = 1e-5", "integrity_risk = 1e-5\npulse_rest_s = 5")
         .unwrap_or_else(|errors| panic!("{}", errors.render()));
-    assert!(with.mission.locating.has_pulses);
+    assert_eq!(with.mission.locating.pulse_rest_s, Some(5.0));
     assert_eq!(with.sim.ae.unwrap().pulse_rest_s, Some(5.0));
     let never = differences("integrity_risk = 1e-5", "integrity_risk = 1e-5\npulse_rest_s = 0")
         .map(|_| ())

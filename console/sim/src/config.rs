@@ -61,7 +61,7 @@ pub struct StationFault {
     pub from_s: f64,
     /// End of the fault, mission time, seconds.
     pub to_s: f64,
-    /// Length by which every range from the station is too long, metres; `None` if the station is silent.
+    /// Length by which every range from the station is too long, metres; negative if too short; `None` if the station is silent.
     pub excess_range_m: Option<f64>,
 }
 

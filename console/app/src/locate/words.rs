@@ -107,7 +107,16 @@ fn pulses(scenario: &Scenario, survey: &Survey) -> Vec<String> {
         lines.extend(before.replace(test).and_then(|before| change_text(before, test)));
     }
     if !survey.pulses.is_empty() && !absent.is_empty() {
-        lines.push(format!("took no part: {}; the clock is taken to be right", absent.join(", ")));
+        lines.push(format!(
+            "took part in no test: {}; left out, because its clock is unknown",
+            absent.join(", ")
+        ));
+    }
+    if let [_] = survey.pulses.as_slice() {
+        lines.push(
+            "one test only: clocks that drift stay unnoticed; let the stations send pulses before and after the run"
+                .into(),
+        );
     }
     lines
 }

@@ -28,6 +28,7 @@ impl Mission {
                 self.known.survey.iter_mut().for_each(Surveying::give_up);
             }
             Verdict::Replan(reason) => self.driving.course.want_plan(reason),
+            Verdict::Done | Verdict::Back if self.waits_for_pulses() => {}
             Verdict::Done => self.end_done(),
             Verdict::Back => self.end_back(),
             Verdict::End(outcome, reason) => self.end(outcome, reason),
@@ -83,6 +84,7 @@ impl Mission {
         let resumes = if only_by_order { Resumes::Never } else { resumes };
         self.happened.push(EventKind::Held { by: by.clone(), resumes });
         self.known.phase = Phase::Held(Hold { by, resumes });
+        self.known.leave_finish();
         self.rules.time_limit.hold(self.known.now_s());
         self.driving.outdate_step();
         self.driving.drop_command(&mut self.happened);
@@ -122,6 +124,9 @@ impl Mission {
     /// Sends the command for this tick to the robot; without a command, the robot stands still.
     pub(super) fn drive(&mut self) -> Drive {
         let Phase::Running(gait) = self.known.phase else { return Drive::STILL };
+        if self.known.finishing.is_some() {
+            return Drive::STILL;
+        }
         if gait == Gait::Back {
             return self.drive_along_way_back();
         }

@@ -2,6 +2,7 @@
 
 use super::{
     back::Back,
+    finishing::Finishing,
     floor::ScannedFloor,
     governing::{guarding::ScanGuard, state::Governor},
     surveying::Surveying,
@@ -48,6 +49,8 @@ pub(super) struct Known {
     pub perception: Option<Perception>,
     /// The map that the mission makes; `None` unless the task is a survey.
     pub survey: Option<Surveying>,
+    /// The wait for the last pulses, after the task is done or the robot is back.
+    pub finishing: Option<Finishing>,
     /// The command at the end of the last tick.
     pub last_drive: Drive,
     /// The drive back that was ordered, until the mission is resumed.
@@ -74,6 +77,7 @@ impl Known {
             scan_guard: ScanGuard::default(),
             perception: config.sensor.map(Perception::new),
             survey: Surveying::new(&config, &drawing),
+            finishing: None,
             chart: Chart::new(drawing, &config, seed),
             task: Task::new(&config.task, start),
             floor: ScannedFloor::new(floor),
@@ -98,7 +102,10 @@ impl Known {
 
     /// Whether the robot moves as its planner commands.
     pub(super) fn follows_planner(&self) -> bool {
-        self.is_running() && !self.phase.is_return() && !self.config.task.is_survey()
+        self.is_running()
+            && self.finishing.is_none()
+            && !self.phase.is_return()
+            && !self.config.task.is_survey()
     }
 
     /// Remaining length of the planner's path or of the way of a survey, metres.

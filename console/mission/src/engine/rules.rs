@@ -60,7 +60,7 @@ impl Rules {
             return Some(Verdict::End(Outcome::Collision, "bumper contact".into()));
         }
         match phase {
-            _ if time_is_up.is_some() => time_is_up,
+            _ if time_is_up.is_some() && !seen.is_finishing => time_is_up,
             Phase::Running(Gait::Back) => self.update_return(seen),
             Phase::Running(_) => self.update_running(seen),
             Phase::Held(hold) => self.update_held(seen, hold),
@@ -73,7 +73,7 @@ impl Rules {
         lost_position
             .update(seen)
             .or_else(|| ZoneRule::update(seen))
-            .or_else(|| seen.task.is_done(seen.here).then_some(Verdict::Done))
+            .or_else(|| (seen.is_finishing || seen.task.is_done(seen.here)).then_some(Verdict::Done))
             .or_else(|| tether.update(seen))
             .or_else(|| LatePlannerRule::update(&seen.planner))
             .or_else(|| ZoneRule::update_planner(seen))
@@ -89,7 +89,7 @@ impl Rules {
         lost_position
             .update(seen)
             .or_else(|| ZoneRule::update(seen))
-            .or_else(|| seen.is_back.then_some(Verdict::Back))
+            .or_else(|| (seen.is_finishing || seen.is_back).then_some(Verdict::Back))
             .or_else(|| tether.reached_beside(seen).map(by_tether))
             .or_else(|| Some(hold(HoldReason::Tether { message: seen.beside?.trouble()? })))
             .or_else(|| stuck.update_return(seen))

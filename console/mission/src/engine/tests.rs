@@ -5,6 +5,7 @@ mod better_plan;
 mod braking;
 mod caught;
 mod covering;
+mod finishing;
 mod guarding;
 mod returning;
 mod shadow;
@@ -318,6 +319,8 @@ struct Flight {
     /// Asks without an answer, each with the tick in which it will be answered.
     open: Vec<(u64, Ask)>,
     closed: Vec<WorkerId>,
+    /// Whether the stations exchange pulses in the next tick.
+    pulse: bool,
     /// Why the vehicle must not be driven.
     trouble: Option<&'static str>,
     /// Age of the readings, seconds.
@@ -352,6 +355,7 @@ impl Flight {
             delay: Box::new(|_, _| 0),
             open: vec![],
             closed: vec![],
+            pulse: false,
             trouble: None,
             age_s: 0.0,
             scanner: None,
@@ -380,6 +384,7 @@ impl Flight {
             robot_pull_n: self.pull_n,
             pressure_pa: self.pressure_pa,
             scan: self.scan(),
+            pulses: if std::mem::take(&mut self.pulse) { exchange() } else { Vec::new() },
             ..Readings::default()
         };
         self.mission.sense(&Input { readings: &readings, age_s: self.age_s, orders, trouble: self.trouble });
@@ -469,6 +474,20 @@ impl Flight {
             _ => None,
         }
     }
+}
+
+/// The pulses of all stations, heard by all others.
+fn exchange() -> Vec<world::PulseSet> {
+    let stations = drawing().stations;
+    let pairs = stations.iter().flat_map(|from| stations.iter().map(move |to| (from, to)));
+    let apart = pairs.filter(|(from, to)| from.id != to.id);
+    apart
+        .map(|(from, to)| world::PulseSet {
+            sender: from.id,
+            receiver: to.id,
+            lengths_m: vec![(from.position - to.position).norm()],
+        })
+        .collect()
 }
 
 fn swap_to(id: &str) -> Order {

@@ -99,7 +99,7 @@ impl Event {
                 let text = format!(
                     "station bias and wrong speed of sound not separable (correlation {correlation:.2})"
                 );
-                line(Severity::Warn, "ae", text)
+                line(Severity::Watch, "ae", text)
             }
             EventKind::Separable => line(
                 Severity::Info,
@@ -174,6 +174,14 @@ impl Event {
                 "robot",
                 format!(
                     "speed limited to {sent_m_per_s:.2} m/s: from {asked_m_per_s:.2} m/s the robot needs {needs_m:.2} m to stop"
+                ),
+            ),
+            EventKind::PulsesAwaited { until_s } => line(
+                Severity::Info,
+                "ae",
+                format!(
+                    "the robot stands still for the pulse test after the run, until T+{} at most",
+                    clock(*until_s)
                 ),
             ),
             EventKind::MediumAwaited => line(

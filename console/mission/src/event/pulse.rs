@@ -56,6 +56,12 @@ pub fn pulse_text(phase: PulsePhase, test: &PulseTest, stations: &[Station]) -> 
     };
     // Writing to a String cannot fail.
     let _ = write!(text, "{found}");
+    let took_part = |station: &&Station| test.offsets_m.iter().any(|(id, _)| *id == station.id);
+    let absent: Vec<&str> =
+        stations.iter().filter(|station| !took_part(station)).map(|station| station.name.as_str()).collect();
+    if !(absent.is_empty() || test.offsets_m.is_empty()) {
+        let _ = write!(text, "; {} took no part", absent.join(", "));
+    }
     text
 }
 

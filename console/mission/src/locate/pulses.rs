@@ -21,6 +21,8 @@ pub(super) struct PulseTests {
     /// Whether the clocks of the stations are estimated: then a test only corrects the speed of sound.
     has_clocks: bool,
     has_ranged: bool,
+    /// Whether the task is done.
+    has_ended: bool,
     /// The last test that agreed with the survey.
     last: PulseSeries,
 }
@@ -35,6 +37,7 @@ impl PulseTests {
             corrects: locating.session.is_none() && !locating.calibrate_sound_speed,
             has_clocks: locating.clocks.is_some(),
             has_ranged: false,
+            has_ended: false,
             last: PulseSeries::default(),
         }
     }
@@ -44,13 +47,22 @@ impl PulseTests {
         self.has_ranged = true;
     }
 
+    /// Notes that the task is done: the next test is the one after the run. A robot that goes on takes this back.
+    pub(super) fn note_end(&mut self, has_ended: bool) {
+        self.has_ended = has_ended;
+    }
+
     /// Evaluates an exchange of pulses; returns its event, and the test if it agrees with the survey.
     pub(super) fn take(&mut self, sets: &[PulseSet]) -> Option<(EventKind, Option<PulseTest>)> {
         if sets.is_empty() {
             return None;
         }
         let sets = &by_pair(sets);
-        let phase = if self.has_ranged { PulsePhase::Held } else { PulsePhase::Before };
+        let phase = match (self.has_ended, self.has_ranged) {
+            (true, _) => PulsePhase::After,
+            (false, true) => PulsePhase::Held,
+            (false, false) => PulsePhase::Before,
+        };
         let are_copies = self.are_copies(sets);
         let pulses: Vec<Pulse> = sets.iter().filter_map(|set| self.pulse(set, are_copies)).collect();
         let test = self.possible(&pulses).and_then(|()| PulseTest::new(&pulses, &self.stations));
@@ -76,7 +88,8 @@ impl PulseTests {
     }
 
     /// Removes the errors that the last test has measured from ranges.
-    pub(super) fn correct(&self, sets: &mut [RangeSet]) {
+    /// Ranges of a station that took no part in the test are left out: its clock is unknown.
+    pub(super) fn correct(&self, sets: &mut Vec<RangeSet>) {
         self.last.correct(0.0, sets);
     }
 

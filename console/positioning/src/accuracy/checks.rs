@@ -8,15 +8,21 @@ use super::{Forecast, Grid, NEAREST_M, adviser::along_wall, is_in_sight, needed}
 use crate::{
     anchor::Anchor,
     protection::{Layout, Risk, other_side_m},
-    quality::{LEAST_SPARED, inverse_of, largest_sigma_m},
+    quality::{LEAST_SPARED, alarm_limit, inverse_of, largest_sigma_m},
 };
 use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
 use world::{ObstacleMap, Point, Station, StationId, World};
 
-/// Number of standard deviations of the least detectable error: a test that one correct station in 1000 fails notices
-/// it in 80 % of the cases (Baarda 1968).
-const NON_CENTRALITY: f64 = 4.13;
+/// Standard normal quantile of the share of the cases in which the least detectable error is noticed: 80 %.
+const POWER_Z: f64 = 0.841_621_234;
+/// Number of standard deviations of the least error for which the calibration of a session names the station in 80 % of the
+/// cases: the bias must exceed five of them, and must fit better by far than that of any other station. Measured with
+/// `tankops-research reproduce detectable`.
+pub(crate) const SESSION_SIGMAS: f64 = 6.3;
+/// Upper bound of a least detectable error, in standard deviations, and the number of halvings of the interval below it.
+const MOST_SIGMAS: f64 = 100.0;
+const HALVINGS: u32 = 30;
 /// Correlation above which two errors cannot be told apart.
 pub const NOT_SEPARABLE: f64 = 0.95;
 /// The number of fixes of the forecast session.
@@ -29,8 +35,8 @@ const COARSE_CELLS: f64 = 16.0;
 pub struct Checks {
     /// Usual protection level, metres; absent where a fix is not protected.
     pub level_m: Option<f64>,
-    /// Least error of the worst station that a single fix detects with a known speed of sound, metres; absent where an
-    /// error never shows.
+    /// Least error of the worst station for which a single fix, with a known speed of sound, raises an alarm or leaves the
+    /// station out in 80 % of the cases, metres; absent where an error never shows.
     pub detectable_m: Option<f64>,
     /// Largest correlation of an error of one station with an error of the speed of sound, 0 to 1.
     pub correlation: f64,
@@ -48,8 +54,10 @@ impl Checks {
 pub struct SessionChecks {
     /// The number of fixes.
     pub fixes: usize,
-    /// Least error of the worst station that the session detects although the speed of sound is unknown, metres; absent
-    /// if an error never shows.
+    /// The station whose error shows least; absent if that of one never shows.
+    pub worst: Option<StationId>,
+    /// Least error of the worst station for which the calibration names it within the session in 80 % of the cases, although
+    /// the speed of sound is unknown, metres; absent if an error never shows.
     pub detectable_m: Option<f64>,
     /// Largest correlation of an error of one station with an error of the speed of sound, 0 to 1.
     pub correlation: f64,
@@ -115,6 +123,25 @@ impl Heard {
         let needed = needed(forecast.is_emission_unknown);
         let covariance = inverse_of(&information).filter(|_| rows.len() >= needed)?;
         Some(Self { place, rows, anchors, covariance, shared, protected_from: needed + 1 })
+    }
+
+    /// Number of standard deviations of the least error that raises the alarm of a fix in 80 % of the cases: the
+    /// non-centrality of its chi-squared test (Baarda 1968), by the cube formula of Abdel-Aty 1954.
+    fn detected_sigmas(&self) -> f64 {
+        let unknowns = 2 + usize::from(self.shared > 0.0);
+        let k = u32::try_from(self.rows.len().saturating_sub(unknowns)).unwrap_or(u32::MAX).max(1);
+        let (limit, k) = (alarm_limit(k), f64::from(k));
+        let is_noticed = |sigmas: f64| {
+            let mean = k + sigmas * sigmas;
+            let spread = 2.0 * (mean + sigmas * sigmas) / (9.0 * mean * mean);
+            (limit / mean).cbrt() - (1.0 - spread) <= -POWER_Z * spread.sqrt()
+        };
+        let (mut low, mut high) = (0.0, MOST_SIGMAS);
+        for _ in 0..HALVINGS {
+            let middle = f64::midpoint(low, high);
+            (low, high) = if is_noticed(middle) { (low, middle) } else { (middle, high) };
+        }
+        high
     }
 
     /// Information about the size of a wrong station's error, about the scale of all ranges, and about both together.
@@ -211,16 +238,22 @@ impl Patterns {
         self.stations.iter().map(|(_, pattern)| of(pattern)).fold(0.0, f64::max)
     }
 
-    /// The least detectable error of the worst station, metres; `None` if it never shows.
-    fn detectable_m(&self, is_scale_free: bool) -> Option<f64> {
+    /// The error of the worst station that is this number of standard deviations, metres; `None` if it never shows.
+    fn detectable_m(&self, sigmas: f64) -> Option<f64> {
+        self.worst(false).map(|(_, sigma_m)| sigmas * sigma_m)
+    }
+
+    /// The station whose error shows least, and the standard deviation with which this error is known, metres; `None` if it
+    /// never shows.
+    fn worst(&self, is_scale_free: bool) -> Option<(StationId, f64)> {
         let information = |pattern: &Pattern| {
             let shared =
                 if is_scale_free && self.scale > 0.0 { pattern.both.powi(2) / self.scale } else { 0.0 };
             pattern.alone - shared
         };
-        let least =
-            self.stations.iter().map(|(_, pattern)| information(pattern)).fold(f64::INFINITY, f64::min);
-        (least > 0.0 && least.is_finite()).then(|| NON_CENTRALITY / least.sqrt())
+        let of = |(station, pattern): &(StationId, Pattern)| (*station, information(pattern));
+        let (station, least) = self.stations.iter().map(of).min_by(|a, b| a.1.total_cmp(&b.1))?;
+        (least > 0.0 && least.is_finite()).then(|| (station, 1.0 / least.sqrt()))
     }
 
     fn add(&mut self, other: &Self) {
@@ -273,7 +306,7 @@ impl Forecast {
         let patterns = heard.patterns();
         Some(Checks {
             level_m: heard.level_m(risk),
-            detectable_m: patterns.detectable_m(false),
+            detectable_m: patterns.detectable_m(heard.detected_sigmas()),
             correlation: patterns.correlation(),
         })
     }
@@ -295,9 +328,11 @@ impl Forecast {
             fixes += 1;
         }
         let correlation = all.correlation();
+        let worst = all.worst(true);
         (fixes > 0).then(|| SessionChecks {
             fixes,
-            detectable_m: all.detectable_m(true),
+            worst: worst.map(|(station, _)| station),
+            detectable_m: worst.map(|(_, sigma_m)| SESSION_SIGMAS * sigma_m),
             correlation,
             is_separable: correlation <= NOT_SEPARABLE,
         })

@@ -40,6 +40,9 @@ pub struct Guard {
     is_on_line: bool,
     /// Whether the last ranges fit the hypothesis that at most one station is wrong.
     is_explained: bool,
+    /// Whether the session calibration has found two wrong stations at once, and no pulse test has agreed with the survey
+    /// since. It is uncertain which two, also after the calibration has taken one of them back.
+    has_two_wrong: bool,
     /// Cycles in a row without a fix.
     silent: u32,
     /// Ticks since the last fix, and the least number of ticks between two fixes so far.
@@ -93,6 +96,7 @@ impl Guard {
             needed: NEEDED + usize::from(config.solver == SolverKind::Differences),
             is_on_line: are_on_line(&config.stations),
             is_explained: true,
+            has_two_wrong: false,
             silent: 0,
             waited: 0,
             usual_wait: None,
@@ -116,8 +120,9 @@ impl Guard {
         self.others.iter_mut().for_each(|other| other.positioner.doubt(doubt));
     }
 
-    /// Takes the clocks of the stations from a pulse test; see [`Positioner::take_pulses`].
+    /// Takes the clocks of the stations from a pulse test that agrees with the survey; see [`Positioner::take_pulses`].
     pub fn take_pulses(&mut self, test: &PulseTest) {
+        self.has_two_wrong = false;
         self.others.iter_mut().for_each(|other| other.positioner.take_pulses(test));
     }
 
@@ -136,9 +141,8 @@ impl Guard {
         for other in &mut self.others {
             is_explained |= other.explains(sets, (session, self.doubt));
         }
-        // If two stations were found wrong at once, it is uncertain which two.
-        let is_one = session.is_none_or(|session| session.biases_m().count() <= 1);
-        self.is_explained = is_explained && is_one;
+        self.is_explained = is_explained;
+        self.has_two_wrong |= session.is_some_and(|session| session.biases_m().count() > 1);
         if whole.is_ok() {
             let waited = std::mem::take(&mut self.waited);
             self.usual_wait = self.usual_wait.into_iter().chain((waited > 0).then_some(waited)).min();
@@ -168,6 +172,9 @@ impl Guard {
         }
         if self.is_silent() {
             return Err(Unprotected::Silent);
+        }
+        if self.has_two_wrong {
+            return Err(Unprotected::TwoWrong);
         }
         if !self.is_explained {
             return Err(Unprotected::Contradiction);

@@ -2,11 +2,11 @@
 
 use super::*;
 use crate::{
-    Differences, FixError, MotionNoise, Nls, PositionSolver, Positioner, PositionerConfig, RangeNoise,
-    Ranging, Screened,
+    Aggregation, Differences, Estimated, FixError, Integrity, MotionNoise, Nls, PositionSolver, Positioner,
+    PositionerConfig, PulseTest, RangeNoise, Ranging, Screened, SessionCalibration, SessionConfig, Timing,
     draws::{Draws, ring},
 };
-use world::{Odometry, Pose, RangeSet};
+use world::{Odometry, Pose, RangeSet, StationId};
 
 const SIGMA_M: f64 = 0.1;
 
@@ -203,6 +203,67 @@ fn the_level_of_the_pose_contains_the_error_while_a_station_drifts() {
         levels_m.sort_by(f64::total_cmp);
         assert!(levels_m[100] < 0.8 && levels_m[199] < 3.0, "{} m, {} m", levels_m[100], levels_m[199]);
     }
+}
+
+#[test]
+fn the_pull_after_a_short_step_is_that_of_the_second_order() {
+    let (stations, mut draws) = (ring(6, 10.0), Draws::new(0.0, 1, 6));
+    let at = Point::new(3.0, -4.0);
+    for is_emission_free in [false, true] {
+        let fix = if is_emission_free {
+            Differences.solve(&ranges(&stations, at, &mut draws), &stations, None).unwrap()
+        } else {
+            Nls.solve(&ranges(&stations, at, &mut draws), &stations, None).unwrap()
+        };
+        let seen = Seen::new(&fix, &stations, is_emission_free).unwrap();
+        for row in &seen.rows {
+            // A step of 5 % of the distance, ahead and to the side.
+            let step = Vector3::new(0.03, 0.04, 0.02) / row.per_m;
+            let (exact, near) = (row.pull(seen.position, &step), row.pull_near(&step));
+            // A range that is wrong by the error of the distance pulls with its weight.
+            let off_m = (exact - near).norm() / row.weight;
+            assert!(off_m < 0.002 * step.xy().norm(), "{off_m} m, {step}");
+        }
+    }
+}
+
+/// Two stations that are wrong by the same length: the calibration may take one of them back although both are still wrong.
+#[test]
+fn after_two_wrong_stations_only_a_pulse_test_gives_protection_back() {
+    let (mut run, mut draws) = (Run::new(8), Draws::new(0.0, 1, 5));
+    let ways = (Aggregation::Mean, Run::NOISE, Timing::default());
+    let stations = run.config.stations.clone();
+    let config = SessionConfig::default();
+    let mut session = SessionCalibration::new(config, &stations, ways, MotionNoise::default());
+    let mut hear = |run: &mut Run, biases_m: &[f64], t_s: f64| {
+        run.drive();
+        (0..10).for_each(|_| session.predict(&Run::STEP, run.at.heading_rad));
+        let sets = run.sets(biases_m, &mut draws);
+        session.take(&sets, (&run.whole.estimate()).into(), t_s);
+        let result = run.whole.cycle(&session.corrected(&sets));
+        run.guard.cycle(&sets, &result.fix, Some(&session));
+        session.biases_m().count()
+    };
+    let mut found = 0;
+    for cycle in 0..300_u32 {
+        let biases_m: &[f64] = if cycle < 80 { &[] } else { &[1.0, 0.0, 0.0, 1.4] };
+        found = found.max(hear(&mut run, biases_m, f64::from(cycle)));
+    }
+    assert_eq!((found, run.guard.level_m(&run.whole)), (2, Err(Unprotected::TwoWrong)));
+    // Both stations are right again.
+    for cycle in 300..600_u32 {
+        hear(&mut run, &[], f64::from(cycle));
+    }
+    assert_eq!(run.guard.level_m(&run.whole), Err(Unprotected::TwoWrong));
+    run.guard.take_pulses(&PulseTest {
+        scale: Estimated { value: 0.0, sigma: 0.001 },
+        offsets_m: Vec::new(),
+        integrity: Integrity::Ok,
+        suspect: None,
+        worst: (StationId(1), StationId(2), 0.0),
+        pulses: 56,
+    });
+    assert!(run.guard.level_m(&run.whole).is_ok());
 }
 
 /// Makes the ranges of a cycle.

@@ -105,9 +105,12 @@ fn between_two_tests_the_errors_change_linearly_and_outside_they_stay() {
         series.correct(t_s, &mut sets);
         assert!((sets[0].ranges_m[0] - 7.0).abs() < 1e-9, "{t_s}: {sets:?}");
     }
-    let mut sets = vec![RangeSet { station: StationId(1), ranges_m: vec![7.0] }];
+    let untested = || vec![RangeSet { station: StationId(9), ranges_m: vec![7.0] }];
+    let mut sets = untested();
     PulseSeries::default().correct(5.0, &mut sets);
-    assert_eq!(sets[0].ranges_m, [7.0]);
+    assert_eq!(sets, untested());
+    series.correct(5.0, &mut sets);
+    assert!(sets.is_empty(), "the clock of a station in no test is unknown: {sets:?}");
 }
 
 proptest! {

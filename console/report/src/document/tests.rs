@@ -186,7 +186,8 @@ fn the_speed_of_sound_and_a_failed_pulse_test_are_stated_in_text_page_and_json()
         ],
     );
     let sound = "speed of sound taken as constant: ranges too long by +2.01 ± 0.06 % at T+00:00:05";
-    let warning = "the stations were not as surveyed from T+00:00:05 to the end: the stated position errors";
+    let warning =
+        "the stations may not have been as surveyed from T+00:00:00 to the end: the stated position errors";
     let text = crate::human(&past.summary);
     assert!(text.contains(sound), "{text}");
     assert!(text.contains(&format!("WARNING        {warning}")), "{text}");

@@ -188,6 +188,7 @@ fn sort(kind: &EventKind) -> Option<Sorted> {
         | EventKind::ParametersChanged { .. }
         | EventKind::Commanded { .. }
         | EventKind::SpeedLimited { .. }
+        | EventKind::PulsesAwaited { .. }
         | EventKind::MediumAwaited
         | EventKind::MediumKnown { .. }
         | EventKind::Drawn { .. }

@@ -1,6 +1,7 @@
 //! Wang et al. 2023: acoustic-emission positioning, compared with the theoretical limit.
 
 mod bound;
+mod detectable;
 mod estimator;
 mod filter;
 mod integrity;
@@ -25,4 +26,5 @@ pub(crate) const STUDIES: &[Study] = &[
     filter::STUDY,
     integrity::STUDY,
     sessions::STUDY,
+    detectable::STUDY,
 ];

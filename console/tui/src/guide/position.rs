@@ -61,7 +61,10 @@ pub(super) const NOT_SEPARABLE: Guide = Guide {
     station with a bias: too few stations are heard, or the robot moved too little.",
     holds: "",
     effect: "A station with a bias is not excluded meanwhile. Once it is found, floor scanned since then loses its guarantee.",
-    remedies: &[wait("Wait until the robot has moved on."), HOLD],
+    remedies: &[
+        wait("Wait until the robot has moved on: a hold would keep the stations from being told apart."),
+        check("Check the stations that the log names, if it names any."),
+    ],
 };
 
 pub(super) const PULSES: Guide = Guide {

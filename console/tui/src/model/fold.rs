@@ -74,6 +74,7 @@ impl Run {
             | EventKind::ProtectionRegained { .. }
             | EventKind::SessionCalibrated { .. }
             | EventKind::ClocksEstimated { .. }
+            | EventKind::PulsesAwaited { .. }
             | EventKind::PulsesTested { .. }
             | EventKind::PulsesFailed { .. }
             | EventKind::StationBiased { .. }
@@ -133,6 +134,7 @@ impl Run {
             | EventKind::TetherAlarmCleared { .. }
             | EventKind::Certified { .. } => self.tethered(event),
             EventKind::Held { by, resumes } => {
+                self.position.pulses_until_s = None;
                 self.hold(event, &Hold { by: by.clone(), resumes: *resumes }, &mut change);
             }
             EventKind::Resumed => {

@@ -6,7 +6,7 @@ use super::{
 use account::{Account, Area, Estimate, InDoubt, LeftOut, MissReason, Shares, Summary, TakenBack};
 use mission::{Order, Phase, WayBack, ZoneCost};
 use serde::{Deserialize, Serialize};
-use world::{CellRun, Point};
+use world::{CellRun, Point, StationId};
 
 /// The id of a run opened since the console was started; 0 means none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
@@ -239,6 +239,14 @@ impl Live {
         let mut stations: Vec<&str> = all.iter().map(|doubt| doubt.floor.station.as_str()).collect();
         stations.dedup();
         (area_m2 > 0.0).then(|| (area_m2, stations.join(" ")))
+    }
+
+    /// The middle of the largest floor that is in doubt because of a station, metres, tank frame; `None` if there is no such
+    /// floor.
+    pub fn place_in_doubt(&self, station: StationId) -> Option<Point> {
+        let name = self.run.station_name(station);
+        let own = self.in_doubt.iter().filter(|doubt| doubt.floor.station == name && doubt.at.is_some());
+        own.max_by(|a, b| a.floor.area_m2.total_cmp(&b.floor.area_m2))?.at
     }
 
     /// For each cell of a floor with `len` cells, whether it is in doubt. Empty if no floor is, and for a replay, whose

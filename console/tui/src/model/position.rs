@@ -35,6 +35,9 @@ pub struct Position {
     /// The last pulse test of the stations, or why it gave no result; `None` if there was none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pulses: Option<Result<(mission::event::PulsePhase, positioning::PulseTest), String>>,
+    /// Mission time until which the robot stands still for the pulse test after the run, seconds; `None` if it does not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pulses_until_s: Option<f64>,
     /// The last fix.
     pub fix: Option<Fix>,
     /// Mission time of the fix, seconds.

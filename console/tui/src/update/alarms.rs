@@ -181,11 +181,21 @@ pub(crate) fn open_actions(model: &mut Model) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Shows the position of the selected alarm on the map.
+/// Shows the position of the selected alarm on the map; of a biased station, the floor that is in doubt because of it.
 pub(crate) fn show_place(model: &mut Model) -> Vec<Effect> {
-    let shown =
-        model.selected_alarm().and_then(|alarm| Some((alarm.place?, name(&alarm.cause, &model.live.run))));
-    match shown {
+    let live = &model.live;
+    let of_alarm = |alarm: &Alarm| {
+        let name = name(&alarm.cause, &live.run);
+        let in_doubt = match &alarm.cause {
+            Cause::Bias(station) => live.place_in_doubt(*station),
+            _ => None,
+        };
+        match in_doubt {
+            Some(at) => Some((at, format!("floor in doubt, {name}"))),
+            None => Some((alarm.place?, name)),
+        }
+    };
+    match model.selected_alarm().and_then(of_alarm) {
         Some((at, what)) => place::show(model, at, &what),
         None => refuse(model, "this alarm has no place on the map".into()),
     }

@@ -309,6 +309,13 @@ fn running(model: &Model) -> Clauses {
 /// What the robot does now: a better plan on offer, the way to the start of a new plan, or the next target.
 fn doing(model: &Model) -> Clauses {
     let run = &model.live.run;
+    if let Some(until_s) = run.position.pulses_until_s {
+        let waits = format!(
+            "The robot stands still for the last pulse test, until T+{} at most.",
+            text::clock(until_s)
+        );
+        return (Role::Title, vec!["Task done.".into(), waits]);
+    }
     if let Some(offer) = &run.planning.offer {
         return (Role::Watch, better_plan(offer));
     }

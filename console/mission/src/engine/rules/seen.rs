@@ -28,6 +28,8 @@ pub(in crate::engine) struct Seen<'a> {
     pub plan_left_m: Option<f64>,
     /// Whether the robot has reached the end of the way back.
     pub is_back: bool,
+    /// Whether the task is done, or the robot is back, and the last pulses are awaited.
+    pub is_finishing: bool,
     /// The no-go zone that the hull entered in this tick, if any.
     pub breached: Option<&'a str>,
     /// A no-go zone that the hull is in, if any.

@@ -231,4 +231,11 @@ const ITEMS: &[Item] = &[
         "tankops reproduce session-calibration",
         "not in the paper",
     ),
+    item(
+        "Beyond",
+        "the least detectable error of a station, forecast and measured",
+        Ours,
+        "tankops reproduce detectable",
+        "not in the paper",
+    ),
 ];

@@ -352,7 +352,12 @@ fn spoil(
 }
 
 /// The least error of the range of a station that one fix detects, metres; `None` if the others cannot check it.
-fn detectable_m(stations: &[Station], at: Point, index: usize, is_emission_free: bool) -> Option<f64> {
+pub(super) fn detectable_m(
+    stations: &[Station],
+    at: Point,
+    index: usize,
+    is_emission_free: bool,
+) -> Option<f64> {
     let (by, covariance) = linearised(stations, at, is_emission_free)?;
     let spared = 1.0 - by[index].dot(&(covariance * by[index]));
     (spared > LEAST_SPARED).then(|| DETECTABLE * SIGMA_M / spared.sqrt())

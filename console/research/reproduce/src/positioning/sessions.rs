@@ -24,15 +24,15 @@ pub(super) const STUDY: Study = Study {
 };
 
 const STATIONS: usize = 6;
-const RADIUS_M: f64 = 20.0;
+pub(super) const RADIUS_M: f64 = 20.0;
 /// Half the length of a lane, and the distance between two lanes, metres.
-const LANE_M: f64 = 12.0;
+pub(super) const LANE_M: f64 = 12.0;
 const APART_M: f64 = 0.5;
 /// Motion between two fixes, metres; there is one fix per second.
-const STEP_M: f64 = 0.4;
+pub(super) const STEP_M: f64 = 0.4;
 /// Standard deviation of a range, metres.
-const SIGMA_M: f64 = 0.1;
-const SCALE: f64 = 0.02;
+pub(super) const SIGMA_M: f64 = 0.1;
+pub(super) const SCALE: f64 = 0.02;
 const BIAS_M: f64 = 0.15;
 /// Mission time at which the station goes wrong, and at which the session ends, seconds.
 const FROM_S: f64 = 600.0;
@@ -61,7 +61,7 @@ const METHODS: [(&str, bool, bool); 4] = [
 
 /// Where the stations are.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Ring {
+pub(super) enum Ring {
     Even,
     Uneven,
 }
@@ -76,11 +76,12 @@ impl Ring {
         }
     }
 
-    fn stations(self, rng: &mut Pcg64) -> Vec<Station> {
+    /// The places of `n` stations.
+    pub(super) fn stations(self, n: usize, rng: &mut Pcg64) -> Vec<Station> {
         let angles: Vec<f64> = match self {
-            Self::Even => (0..STATIONS).map(|k| TAU * k as f64 / STATIONS as f64).collect(),
+            Self::Even => (0..n).map(|k| TAU * k as f64 / n as f64).collect(),
             Self::Uneven => loop {
-                let mut angles: Vec<f64> = (0..STATIONS).map(|_| rng.random_range(0.0..TAU)).collect();
+                let mut angles: Vec<f64> = (0..n).map(|_| rng.random_range(0.0..TAU)).collect();
                 angles.sort_by(f64::total_cmp);
                 let next = angles.iter().skip(1).copied().chain([angles[0] + TAU]);
                 let [least, most] = GAPS_DEG.map(f64::to_radians);
@@ -157,14 +158,16 @@ fn rows(block: &Block<'_>, all: &[&Found], is_wrong: bool) -> Vec<Row> {
 }
 
 /// The robot on its lanes.
-struct Robot {
-    at: Point,
-    heading_rad: f64,
+pub(super) struct Robot {
+    pub at: Point,
+    pub heading_rad: f64,
+    /// Motion between two fixes, metres.
+    pub step_m: f64,
 }
 
 impl Robot {
     /// Moves to the place of the next fix; returns the motion as the robot measures it, and the heading that it assumes.
-    fn drive(&mut self, rng: &mut Pcg64) -> Vec<(Odometry, f64)> {
+    pub(super) fn drive(&mut self, rng: &mut Pcg64) -> Vec<(Odometry, f64)> {
         let mut bell = || -> f64 { StandardNormal.sample(rng) };
         let mut motions = Vec::new();
         if self.at.x.abs() > LANE_M {
@@ -173,8 +176,8 @@ impl Robot {
             self.at.y += APART_M;
             motions.push((forward(APART_M), TAU / 4.0));
         }
-        self.at += Vector::new(self.heading_rad.cos(), 0.0) * STEP_M;
-        let measured_m = STEP_M * (1.0 + ODOMETRY * bell());
+        self.at += Vector::new(self.heading_rad.cos(), 0.0) * self.step_m;
+        let measured_m = self.step_m * (1.0 + ODOMETRY * bell());
         motions.push((forward(measured_m), self.heading_rad + HEADING_RAD * bell()));
         motions
     }
@@ -185,21 +188,33 @@ fn forward(way_m: f64) -> Odometry {
     Odometry { forward_m: way_m / (1.0 - SLIP), ..Odometry::default() }
 }
 
+/// The errors of single ranges.
+pub(super) const NOISE: (RangeNoise, Timing) =
+    (RangeNoise::Gaussian { sigma_ratio: 1e-6 }, Timing { jitter_m: SIGMA_M, resolution_m: 0.0 });
+
+/// The calibration of a session without any fix.
+pub(super) fn calibration(stations: &[Station], is_free: bool) -> SessionCalibration {
+    let motion = MotionNoise { sigma_per_m: ODOMETRY.hypot(SLIP), ..MotionNoise::default() };
+    let ways = (Aggregation::Mean, NOISE.0, NOISE.1);
+    let plain = SessionCalibration::new(SessionConfig::default(), stations, ways, motion);
+    if is_free { plain.with_free_emission() } else { plain }
+}
+
+/// The place at which a robot expects to be.
+pub(super) fn near(at: Point, rng: &mut Pcg64) -> Near {
+    let mut off_m = || -> f64 { SIGMA_M * Distribution::<f64>::sample(&StandardNormal, rng) };
+    let at = at + Vector::new(off_m(), off_m());
+    Near { at, sigma_m: SIGMA_M, heading_sigma_rad: HEADING_RAD }
+}
+
 fn session(ring: Ring, (is_free, is_wrong): (bool, bool), seed: u64) -> Found {
     let purpose = 451 + 4 * u64::from(ring == Ring::Uneven) + 2 * u64::from(is_free) + u64::from(is_wrong);
     // The layout depends on the seed alone, so the methods share it.
-    let stations = ring.stations(&mut rng(seed, 450));
+    let stations = ring.stations(STATIONS, &mut rng(seed, 450));
     let mut rng = rng(seed, purpose);
     let wrong = stations[rng.random_range(0..STATIONS)].id;
-    let motion = MotionNoise { sigma_per_m: ODOMETRY.hypot(SLIP), ..MotionNoise::default() };
-    let ways = (
-        Aggregation::Mean,
-        RangeNoise::Gaussian { sigma_ratio: 1e-6 },
-        Timing { jitter_m: SIGMA_M, resolution_m: 0.0 },
-    );
-    let plain = SessionCalibration::new(SessionConfig::default(), &stations, ways, motion);
-    let mut calibration = if is_free { plain.with_free_emission() } else { plain };
-    let mut robot = Robot { at: Point::new(-LANE_M, -LANE_M), heading_rad: 0.0 };
+    let mut calibration = calibration(&stations, is_free);
+    let mut robot = Robot { at: Point::new(-LANE_M, -LANE_M), heading_rad: 0.0, step_m: STEP_M };
     let mut found =
         Found { right_after_s: None, is_first_right: None, is_sound_named: false, scale: [0.0; 2] };
     for second in 1..=END_S as u32 {
@@ -209,10 +224,7 @@ fn session(ring: Ring, (is_free, is_wrong): (bool, bool), seed: u64) -> Found {
         }
         let bias_m = if is_wrong && t_s > FROM_S { BIAS_M } else { 0.0 };
         let sets = heard(&stations, robot.at, (is_free, wrong, bias_m), &mut rng);
-        let mut off_m = || -> f64 { SIGMA_M * Distribution::<f64>::sample(&StandardNormal, &mut rng) };
-        let at = robot.at + Vector::new(off_m(), off_m());
-        let near = Near { at, sigma_m: SIGMA_M, heading_sigma_rad: HEADING_RAD };
-        for news in calibration.take(&sets, near, t_s) {
+        for news in calibration.take(&sets, near(robot.at, &mut rng), t_s) {
             let News::Biased { station, .. } = news else { continue };
             let is_right = station == wrong && t_s > FROM_S && is_wrong;
             found.is_first_right.get_or_insert(is_right);
@@ -229,8 +241,8 @@ fn session(ring: Ring, (is_free, is_wrong): (bool, bool), seed: u64) -> Found {
     found
 }
 
-/// The ranges of a cycle.
-fn heard(
+/// The ranges of a cycle, in which those of a station are wrong by a length, metres.
+pub(super) fn heard(
     stations: &[Station],
     at: Point,
     (is_free, wrong, bias_m): (bool, StationId, f64),

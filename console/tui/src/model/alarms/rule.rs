@@ -77,8 +77,9 @@ pub fn rule(cause: &Cause, severity: Severity, context: Context) -> Rule {
         }
         (Cause::PositionLost | Cause::Contradiction, _) => rule(Severity::Crit, CYCLE_S, 0.0),
         (Cause::NotProtected, _) => rule(Severity::Warn, CYCLE_S, 0.0),
-        (Cause::Bias(_) | Cause::Pulses | Cause::DeadChannel, _) => at_once(Severity::Warn),
-        (Cause::NotSeparable, _) => at_once(Severity::Watch),
+        (Cause::Bias(_) | Cause::NotSeparable | Cause::Pulses | Cause::DeadChannel, _) => {
+            at_once(Severity::Warn)
+        }
         (Cause::NoFix | Cause::Station(_), _) => rule(Severity::Watch, CYCLE_S, 0.0),
         // A refused plan is never run. While the robot is under way, the mission has a second one made; only if that is
         // refused, too, the robot is held for it.

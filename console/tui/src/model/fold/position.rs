@@ -40,7 +40,9 @@ impl Run {
                     (Some(*scale), slip_correlation.is_some());
             }
             EventKind::ClocksEstimated { offsets } => self.position.clocks.clone_from(offsets),
+            EventKind::PulsesAwaited { until_s } => self.position.pulses_until_s = Some(*until_s),
             EventKind::PulsesTested { phase, test } => {
+                self.position.pulses_until_s = None;
                 self.position.pulses = Some(Ok((*phase, test.clone())));
                 if test.integrity == Integrity::Alarm {
                     self.raise_as_logged(event, Cause::Pulses);
@@ -49,6 +51,7 @@ impl Run {
                 }
             }
             EventKind::PulsesFailed { why, .. } => {
+                self.position.pulses_until_s = None;
                 self.position.pulses = Some(Err(pulse_error_text(*why, self.stations())));
                 self.raise_as_logged(event, Cause::Pulses);
             }

@@ -13,7 +13,9 @@ impl Model {
         let about = run.about.as_ref()?;
         let doubtful = |why: &str| check(NAME, CheckOutcome::Warning, why.to_owned());
         match &run.position.pulses {
-            None if about.mission.locating.has_pulses => Some(doubtful("no pulse has come yet; check again")),
+            None if about.mission.locating.pulse_rest_s.is_some() => {
+                Some(doubtful("no pulse has come yet; check again"))
+            }
             None => None,
             Some(Err(why)) => Some(doubtful(why)),
             Some(Ok((phase, test))) => {

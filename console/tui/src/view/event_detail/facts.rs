@@ -67,6 +67,7 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::ScannerJudged { .. } => "scans usable again",
         EventKind::ChannelsJudged(judged) if judged.dead.is_empty() => "channels work again",
         EventKind::ChannelsJudged(_) => "channel dead",
+        EventKind::PulsesAwaited { .. } => "waiting for the last pulses",
         EventKind::MediumAwaited => "waiting for the pressure sensor",
         EventKind::MediumKnown { .. } => "floor medium detected",
         EventKind::Held { .. } => "mission held",

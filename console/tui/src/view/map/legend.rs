@@ -141,7 +141,8 @@ pub(in crate::view) fn of_floor(
     has_trail: bool,
     columns: usize,
 ) -> Vec<Parts> {
-    let floor = shades.into_iter().flat_map(shade::occurring).map(of_shade);
+    let floor =
+        shades.into_iter().flat_map(shade::occurring).map(|(shade, word)| of_shade(shade, word.into()));
     let trail = has_trail.then(|| lines::entry(look, ink::TRAIL, "trail"));
     let entries: Vec<Entry> = floor.chain(trail).collect();
     lines(&entries, columns).into_iter().map(line_parts).collect()
@@ -186,7 +187,7 @@ pub(super) fn draw_lines(look: &Look, frame: &mut Frame, area: Rect, left_over: 
 
 /// The entries for what the map shows now, the most important first: the classes of floor, then lines and marks.
 pub(super) fn entries(look: &Look, window: Window) -> Vec<Entry> {
-    let floor = shade::shown(look, window).map(of_shade);
+    let floor = shade::shown(look, window).map(|entry| of_shade(entry.0, shade::word(look, entry)));
     let lines = lines::shown(look, window).into_iter();
     let marks = marks::places(look, window)
         .into_iter()
@@ -195,8 +196,8 @@ pub(super) fn entries(look: &Look, window: Window) -> Vec<Entry> {
     floor.chain(lines).chain(marks).collect()
 }
 
-fn of_shade((shade, word): (Shade, &'static str)) -> Entry {
-    Entry { role: shade.role(), mark: shade_mark(shade), word: word.into() }
+fn of_shade(shade: Shade, word: Cow<'static, str>) -> Entry {
+    Entry { role: shade.role(), mark: shade_mark(shade), word }
 }
 
 fn shade_mark(shade: Shade) -> String {

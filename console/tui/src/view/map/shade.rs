@@ -4,12 +4,12 @@ use super::shapes::Window;
 use super::survey;
 use crate::model::{Live, Raster, Run, Together, replay::Scans, survey::Survey, ui::MapLayer};
 use crate::theme::Role;
-use crate::view::look::Look;
+use crate::view::{look::Look, text};
 use account::InDoubt;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
-use std::rc::Rc;
+use std::{borrow::Cow, rc::Rc};
 use world::{CellRun, FloorClass, Point};
 
 /// The shade of a piece of floor.
@@ -90,6 +90,12 @@ impl Shade {
     /// Whether this run has left the floor unscanned although it could have been scanned.
     fn is_unscanned(self) -> bool {
         matches!(self, Self::NotReached | Self::NotRequested | Self::Floor(FloorClass::Missed))
+    }
+
+    /// Whether the floor was scanned.
+    fn is_scanned(self) -> bool {
+        use FloorClass::{Again, Partial, Scanned};
+        matches!(self, Self::InDoubt | Self::Floor(Scanned | Again | Partial))
     }
 
     /// Whether a character is drawn instead of a filled half of a cell.
@@ -352,17 +358,27 @@ fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
         };
         if let Some(layer) = shown {
             let own = |at, edge_m| ground.as_ref().and_then(|ground| floor(ground, at, edge_m));
-            let shade = |(at, edge_m)| forecast(look, layer, at).or_else(|| own(at, edge_m));
+            let shade = |(at, edge_m)| {
+                let own = own(at, edge_m);
+                let is_kept = own.is_some_and(Shade::is_scanned) && is_even(at, edge_m);
+                forecast(look, layer, at).filter(|_| !is_kept).or(own)
+            };
             return Rc::new(dots.map(shade).collect());
         }
         let Some(ground) = &ground else { return Rc::new(Painted::from_iter([])) };
         let raster = ground.raster;
+        // Floor that this re-scan has to scan is not laid over by earlier runs.
+        let not_requested = before.map_or_else(Vec::new, |_| run.not_requested());
+        let is_requested = |at: Point| {
+            let cell = raster.floor().cell_at(at);
+            cell.is_some_and(|cell| not_requested.get(cell) == Some(&false))
+        };
         let shade = |(at, edge_m)| {
             if let Some(other) = other {
                 return Scans::in_square(raster, other, at, edge_m).and_then(difference);
             }
             let own = floor(ground, at, edge_m);
-            let before = before.filter(|_| own.is_none_or(Shade::is_unscanned));
+            let before = before.filter(|_| own.is_none_or(Shade::is_unscanned) && !is_requested(at));
             before.and_then(|before| scanned_before(before, at, edge_m)).or(own)
         };
         let is_inside = |at, edge_m| is_inside(raster, rows_per_row, (at, edge_m));
@@ -435,6 +451,25 @@ fn difference(scans: Scans) -> Option<Shade> {
 fn scanned_before(before: &Raster, at: Point, edge_m: f64) -> Option<Shade> {
     let class = before.class_in(at, edge_m, false)?;
     matches!(class, FloorClass::Scanned | FloorClass::Again | FloorClass::Partial).then_some(Shade::Before)
+}
+
+/// Whether a square is one of every other one, as on a chessboard: there, a forecast leaves scanned floor to be seen.
+fn is_even(at: Point, edge_m: f64) -> bool {
+    let [column, row] =
+        [at.x, at.y].map(|length_m| (length_m / edge_m.max(f64::MIN_POSITIVE)).floor() as i64);
+    (column + row).rem_euclid(2) == 0
+}
+
+/// The word of a shade in the legend: that of a forecast with its limit.
+pub(super) fn word(look: &Look, (shade, word): (Shade, &'static str)) -> Cow<'static, str> {
+    let limit_m = look.run.about.as_ref().map(|about| about.mission.position_limit_m);
+    let share = match shade {
+        Shade::HighLevel | Shade::WeakFix => 0.5,
+        Shade::PoorFix => 1.0,
+        _ => return word.into(),
+    };
+    limit_m
+        .map_or(word.into(), |limit_m| format!("{word}, above {} m", text::number(share * limit_m, 2)).into())
 }
 
 /// The shade of a forecast at a point: beyond the limit, or beyond half of the limit.
