@@ -70,7 +70,76 @@ impl fmt::Display for Miss {
         let found = self.found.as_deref().unwrap_or("no value");
         match self.key {
             "outcome" => write!(f, "expected {}, actual {found}", self.bound),
-            key => write!(f, "expected {key} = {}, actual {found}", self.bound),
+            key => {
+                let what = Bounded::of(key);
+                let found =
+                    self.found.as_deref().map_or_else(|| found.to_owned(), |found| what.with_unit(found));
+                write!(
+                    f,
+                    "expected {} {}{} ({key}), actual {found}",
+                    what.side,
+                    what.with_unit(&self.bound),
+                    what.name
+                )
+            }
+        }
+    }
+}
+
+/// A bounded figure in words.
+struct Bounded {
+    /// `at least` or `at most`.
+    side: &'static str,
+    /// The figure, after the bound with its unit.
+    name: &'static str,
+    unit: &'static str,
+}
+
+impl Bounded {
+    fn of(key: &str) -> Self {
+        let unit = match key {
+            _ if key.ends_with("_m") => " m",
+            _ if key.ends_with("_s") => " s",
+            _ if key.ends_with("_deg") => "°",
+            "collisions_max" => "",
+            _ => " %",
+        };
+        let name = match key {
+            "collisions_max" => " collisions",
+            "clearance_min_m" => " of clearance",
+            "mission_time_max_s" => " of mission time",
+            "path_length_max_m" => " of path driven",
+            "coverage_reachable_min" => " of the reachable floor scanned",
+            "coverage_truth_min" => " of the reachable floor scanned by true position",
+            "coverage_whole_min" => " of the whole floor scanned",
+            "explored_min" => " of the floor explored",
+            "overlap_max" => " of overlap",
+            "precision_min" => " of precision",
+            "recall_min" => " of recall",
+            "rmse_max_m" => " of distance from the preset path (RMS)",
+            "cross_track_rmse_max_m" => " of cross-track error (RMS)",
+            "mean_error_max_m" => " of mean position error",
+            "p95_error_max_m" => " of position error in 95 % of the ticks",
+            "in_95_ellipse_min" => " of the ticks inside the 95 % ellipse",
+            "tether_length_max_m" => " of tether out",
+            "wrap_max_deg" => " of wrap on one obstacle",
+            "tether_end_length_max_m" => " of tether out at the end",
+            "position_lost_max_s" => " without a position",
+            _ => "",
+        };
+        let side = if key.contains("_min") { "at least" } else { "at most" };
+        Self { side, name, unit }
+    }
+
+    /// A figure with its unit; shares become per cent.
+    fn with_unit(&self, figure: &str) -> String {
+        match figure.parse::<f64>() {
+            Ok(share) if self.unit == " %" => {
+                let percent = format!("{:.4}", 100.0 * share);
+                let percent = percent.trim_end_matches('0').trim_end_matches('.');
+                format!("{percent} %")
+            }
+            _ => format!("{figure}{}", self.unit),
         }
     }
 }
@@ -252,16 +321,39 @@ mod tests {
         let misses: Vec<String> = expect.check(&run).iter().map(ToString::to_string).collect();
         assert_eq!(
             misses,
-            ["expected complete, actual stuck", "expected path_length_max_m = 70, actual 70.1"]
+            [
+                "expected complete, actual stuck",
+                "expected at most 70 m of path driven (path_length_max_m), actual 70.1 m"
+            ]
         );
     }
 
     #[test]
     fn a_figure_has_the_decimals_of_its_kind_and_more_only_to_show_the_difference() {
         let miss = |bound, found| miss("coverage_reachable_min", Side::AtLeast, bound, Some(found)).unwrap();
-        assert_eq!(miss(0.95, 0.229_641).to_string(), "expected coverage_reachable_min = 0.95, actual 0.230");
+        assert_eq!(
+            miss(0.95, 0.229_641).to_string(),
+            "expected at least 95 % of the reachable floor scanned (coverage_reachable_min), actual 23 %"
+        );
         assert_eq!(miss(0.95, 0.949_97).found.unwrap(), "0.94997");
         assert_eq!(miss(0.95, 0.95 - 1e-9).found.unwrap(), "0.950000");
+    }
+
+    #[test]
+    fn every_bound_has_words_and_a_unit() {
+        for (key, words) in [
+            (
+                "coverage_truth_min",
+                "expected at least 98.5 % of the reachable floor scanned by true position",
+            ),
+            ("tether_end_length_max_m", "expected at most 0.985 m of tether out at the end"),
+            ("wrap_max_deg", "expected at most 0.985° of wrap on one obstacle"),
+            ("position_lost_max_s", "expected at most 0.985 s without a position"),
+        ] {
+            let miss = Miss { key, bound: "0.985".into(), found: None };
+            assert_eq!(miss.to_string(), format!("{words} ({key}), actual no value"));
+        }
+        assert!(NEED_TRUTH.iter().all(|key| !Bounded::of(key).name.is_empty()));
     }
 
     #[test]
@@ -286,6 +378,6 @@ mod tests {
     fn a_figure_that_is_absent_keeps_no_bound() {
         let expect = Expect { recall_min: Some(0.0), ..Expect::default() };
         let misses = expect.check(&Summary::default());
-        assert_eq!(misses[0].to_string(), "expected recall_min = 0, actual no value");
+        assert_eq!(misses[0].to_string(), "expected at least 0 % of recall (recall_min), actual no value");
     }
 }

@@ -55,7 +55,7 @@ fn scenario(args: &MapOfArgs, survey: &PastSurvey, run: &str, plugins: &PluginDi
     let found = planners::found(plugins);
     let planner = planners::suited_to_coverage(&found).map_or(COVERAGE_PLANNER, |info| &info.id);
     let shown = output.display().to_string();
-    let text = cover_of_map(&survey.opened, run, &survey.map, planner)
+    let text = cover_of_map(&survey.opened, run, (&survey.map, &survey.numbers), planner)
         .map_err(|error| bad_input(format!("{run}: {error}")))?;
     // Do not write a scenario that the scenario reader would refuse.
     Scenario::parse(&text, &shown).map_err(|errors| {

@@ -7,10 +7,11 @@ use crate::{
 };
 use command::json::say_json;
 use flight::{
+    Flight,
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
     hosts, planners, scenarios,
 };
-use mission::{Cause, Fault, Parameters, PlannerChoice, TaskConfig, check_extent, preview};
+use mission::{Cause, EventKind, Fault, Parameters, PlannerChoice, TaskConfig, check_extent, preview};
 use planner_api::{Code, LogLevel, Plan};
 use planner_host::{BlockingHost, PluginDirs, Reply};
 use report::{
@@ -42,7 +43,7 @@ pub(crate) fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<Exit
         check_free(file, Some(args.force), &[&args.scenario])?;
     }
     let (mission, drawing) = (&scenario.mission, scenario.sim.world.as_drawn());
-    let planned = Planned::new(mission, &drawing, make_plan(&scenario, plugins)?);
+    let planned = plan_of(&scenario, plugins)?;
     let better = better(&scenario, &planned, plugins);
     if args.json {
         say_json("the plan", &WithAdvice { planned: &planned, better: better.as_ref() })?;
@@ -109,7 +110,7 @@ fn better(scenario: &Scenario, planned: &Planned, plugins: &PluginDirs) -> Optio
         planners::suited_to_coverage(&found).filter(|info| info.id != scenario.mission.planner.id)?;
     let mut other = scenario.clone();
     other.mission.planner = PlannerChoice { id: suited.id.clone(), parameters: Parameters::default() };
-    let plan = Planned::new(&other.mission, &scenario.sim.world.as_drawn(), make_plan(&other, plugins).ok()?);
+    let plan = plan_of(&other, plugins).ok()?;
     let ((_, own_s), (path_length_m, mission_time_s)) = (planned.effort(), plan.effort());
     let is_far = !planned.flies(&scenario.mission) || mission_time_s <= FAR * own_s;
     let planner = suited.id.clone();
@@ -138,6 +139,15 @@ pub(crate) fn planned_path(scenario: &Scenario, plugins: &PluginDirs) -> anyhow:
     let made = make_plan(scenario, plugins)?;
     let why = made.reason.unwrap_or_else(|| "the planner gave no path".into());
     if made.plan.path.len() < 2 { Err(bad_input(format!("--plan: {why}"))) } else { Ok(made.plan.path) }
+}
+
+/// The plan of a scenario's mission, with its figures.
+fn plan_of(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planned> {
+    let made = make_plan(scenario, plugins)?;
+    let EventKind::RunOpened(run) = Flight::prepare(scenario, false).opened().kind else {
+        unreachable!("a flight begins with the event that opens it")
+    };
+    Ok(Planned::new(&run, made))
 }
 
 fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Made> {

@@ -30,7 +30,7 @@ pub use cells::{CellState, changes, runs};
 pub use difference::Fate;
 pub use frontiers::Frontier;
 pub use grid::Grid;
-pub use map::SurveyMap;
+pub use map::{SurveyMap, column_numbers};
 pub use ros::RosMap;
 pub use survey::{Exploration, Scanning};
 pub use unseen::Unseen;

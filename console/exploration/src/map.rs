@@ -6,7 +6,7 @@ use crate::{
     grid::Grid,
     survey::Exploration,
 };
-use geometry::{Shape, Vector};
+use geometry::{Point, Shape, Vector};
 use serde::{Deserialize, Serialize};
 
 /// Width of the belt around a column or along the wall, metres, in which the fitted outline decides instead of single
@@ -27,6 +27,26 @@ pub struct SurveyMap {
     pub others: Vec<Shape>,
     /// Share of the floor within the wall that scans have shown, 0 to 1.
     pub explored: f64,
+}
+
+/// The numbers of columns, in their order: the number in the name of the found obstacle that a column stands for, such as
+/// `found 2`, so that a column has the same number in the log, on the map and in what is made of the map. Other columns get
+/// the numbers after the largest one. `found`: the name and the centre of each found obstacle, metres, tank frame.
+pub fn column_numbers<'a>(columns: &[Column], found: impl Iterator<Item = (&'a str, Point)>) -> Vec<usize> {
+    let number = |name: &str| name.strip_prefix("found ")?.parse::<usize>().ok();
+    let found: Vec<(usize, Point)> = found.filter_map(|(name, at)| Some((number(name)?, at))).collect();
+    let mut next = found.iter().map(|(number, _)| *number).max().unwrap_or(0);
+    let mut taken = Vec::new();
+    for column in columns {
+        let is_here = |at: &Point| column.shape().distance_m(*at) <= 0.0;
+        let mut numbers = found.iter().filter(|(_, at)| is_here(at)).map(|(number, _)| *number);
+        let number = numbers.find(|number| !taken.contains(number)).unwrap_or_else(|| {
+            next += 1;
+            next
+        });
+        taken.push(number);
+    }
+    taken
 }
 
 impl SurveyMap {
@@ -96,5 +116,28 @@ impl Exploration {
             wall_m if wall_m > -2.0 * self.grid.cell_m => CellState::Solid,
             _ => CellState::Unseen,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_column_has_the_number_of_the_obstacle_that_it_stands_for() {
+        let column = |x: f64| Column {
+            center: Point::new(x, 0.0),
+            radius_m: 0.3,
+            center_sigma_m: 0.01,
+            radius_sigma_m: 0.01,
+        };
+        let columns = [column(5.0), column(1.0), column(9.0), column(3.0)];
+        let found = [
+            ("found 2", Point::new(1.05, 0.0)),
+            ("found 7", Point::new(5.1, 0.1)),
+            ("cart", Point::new(9.0, 0.0)),
+        ];
+        assert_eq!(column_numbers(&columns, found.into_iter()), [7, 2, 8, 9]);
+        assert_eq!(column_numbers(&columns, std::iter::empty()), [1, 2, 3, 4]);
     }
 }

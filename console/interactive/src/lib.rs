@@ -21,6 +21,7 @@ mod look;
 mod measure;
 mod pace;
 mod plain;
+mod promise;
 mod reading;
 mod rebuilt;
 mod replaying;

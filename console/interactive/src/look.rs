@@ -211,15 +211,18 @@ fn past_run(listed: &Listed, scenarios: &[ScenarioEntry]) -> PastRun {
 }
 
 /// What to do with a run whose console was killed.
-const NEXT_AFTER_CRASH: &str =
-    ". Re-scan the rest from the list of runs (:rescan); `tankops recover` closes the run for a signature";
+const NEXT_AFTER_CRASH: &str = ". `tankops recover` closes the run for a signature";
 
 fn attention(runs: &[PastRun], scenarios: &[ScenarioEntry]) -> Vec<Attention> {
     let bad_ends = ["CRASHED", "RECORDING FAILED", "UNREADABLE"];
     let bad_runs = runs.iter().take(RECENT).filter(|run| bad_ends.contains(&run.end.as_str())).map(|run| {
         let note = run.note.clone().unwrap_or_default();
-        let next = if run.end == "CRASHED" { NEXT_AFTER_CRASH } else { "" };
-        point(Severity::Warn, &run.end, format!("run {}: {note}{next}", run.name))
+        let text = if run.end == "CRASHED" {
+            format!("run {}: re-scan the rest (:rescan); {note}{NEXT_AFTER_CRASH}", run.name)
+        } else {
+            format!("run {}: {note}", run.name)
+        };
+        point(Severity::Warn, &run.end, text)
     });
     let invalid = scenarios.iter().filter_map(|entry| {
         let problem = entry.problem.as_ref()?;

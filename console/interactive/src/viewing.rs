@@ -1,6 +1,9 @@
 //! Watching a run: its journal is read while another process writes it, or after the run has ended.
 
-use super::inbox::RunOutbox;
+use super::{
+    inbox::RunOutbox,
+    promise::{self, StartPlan},
+};
 use account::{DoubtWatch, InDoubt};
 use anyhow::Context;
 use mission::{Event, EventKind, Severity};
@@ -33,7 +36,14 @@ pub(super) fn begin(folder: &Path, screen: RunOutbox) -> anyhow::Result<()> {
         thread::sleep(LOOK_AGAIN);
         standing(&writer) == Standing::Running
     })?;
-    let viewing = Viewing { folder, screen, read: Vec::new(), sent_at: Instant::now(), doubt: None };
+    let viewing = Viewing {
+        folder,
+        screen,
+        read: Vec::new(),
+        sent_at: Instant::now(),
+        doubt: None,
+        start: StartPlan::default(),
+    };
     let began = thread::Builder::new().name("journal".into()).spawn(move || viewing.read(reader));
     began.map(drop).context("starting the thread that reads the journal")
 }
@@ -46,6 +56,8 @@ struct Viewing {
     sent_at: Instant,
     /// Finds the floor in doubt; `None` if no floor can be.
     doubt: Option<DoubtWatch>,
+    /// Finds the plan of the start, for its promise.
+    start: StartPlan,
 }
 
 impl Viewing {
@@ -72,6 +84,9 @@ impl Viewing {
             let is_new_tick = self.read.last().is_some_and(|last| last.tick != event.tick);
             if is_new_tick && (self.read.len() >= MOST || self.sent_at.elapsed() >= PATIENCE) {
                 self.send();
+            }
+            if let Some(found) = self.start.take(&event) {
+                promise::send(found, self.screen.clone());
             }
             let in_doubt = self.watch_doubt(&event);
             self.read.push(event);

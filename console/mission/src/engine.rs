@@ -57,7 +57,7 @@ use shadow::Shadow;
 use stepping::PlaceOnPlan;
 use worker::Worker;
 use workers::Workers;
-use world::{Floor, Readings, World};
+use world::{CoverageGrid, Floor, Readings, World};
 
 /// The inputs at the start of a tick.
 #[derive(Debug, Clone, Copy)]
@@ -126,6 +126,11 @@ impl Mission {
     /// The phase of the mission.
     pub fn phase(&self) -> &Phase {
         &self.known.phase
+    }
+
+    /// The floor, with the part that has been scanned so far.
+    pub fn scanned(&self) -> &CoverageGrid {
+        &self.known.floor.coverage
     }
 
     /// The estimated heading of the robot, radians.

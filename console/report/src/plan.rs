@@ -4,8 +4,8 @@ use crate::{
     drawing::plan::{Drawn, svg},
     leg::{Leg, legs},
 };
-use account::estimate::time_s;
-use mission::{MissionConfig, Parameters, TaskConfig, tether::certify_from_start};
+use account::{LeftOut, estimate::time_s};
+use mission::{MissionConfig, Parameters, TaskConfig, event::RunOpened, tether::certify_from_start};
 use planner_api::Plan;
 use serde::Serialize;
 use world::{
@@ -41,6 +41,9 @@ pub struct Planned {
     warnings: Vec<String>,
     /// The reachable floor as the reports define it; absent for missions without a scan.
     floor: Option<PlannedFloor>,
+    /// The requested floor that the plan leaves out, with the reasons; absent for missions without a scan.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    left_out: Option<LeftOut>,
     /// The tether along the path; absent without a tether.
     certificate: Option<Certificate>,
 }
@@ -79,9 +82,10 @@ pub struct Made {
 }
 
 impl Planned {
-    /// A plan for a mission on the drawing.
-    pub fn new(mission: &MissionConfig, drawing: &World, made: Made) -> Self {
+    /// A plan for the mission of a run that has not begun, on the drawing of its tank.
+    pub fn new(run: &RunOpened, made: Made) -> Self {
         let Made { plan, plan_time_ms, reason, warnings } = made;
+        let (mission, drawing) = (&run.mission, &run.world.as_drawn());
         let map = ObstacleMap::new(&drawing.boundary, &drawing.obstacles);
         Self {
             planner: mission.planner.id.clone(),
@@ -94,6 +98,7 @@ impl Planned {
             reason,
             warnings,
             floor: planned_floor(mission, drawing, &plan.path),
+            left_out: LeftOut::of(run, &plan.path, &plan.cuts, plan.complete),
             certificate: certificate(mission, drawing, &plan),
             cuts: plan.cuts,
             path: plan.path,
@@ -139,16 +144,17 @@ impl Planned {
     pub fn human(&self) -> String {
         let reason = self.reason.as_ref().map(|reason| format!("reason    {reason}\n")).unwrap_or_default();
         format!(
-            "planner   {}\nlength    {:.2} m, {} points\n{}computed  in {}\ncomplete  {}\n{reason}{}{}{}",
+            "planner   {}\nlength    {:.2} m, {} points\n{}computed  in {}\ncomplete  {}\n{reason}{}{}{}{}",
             self.planner,
             self.length_m,
             self.path.len(),
             lengths(self),
             self.plan_time_ms
                 .map_or_else(|| format!("under {RESOLVED_MS} ms"), |time_ms| format!("{time_ms:.2} ms")),
-            if self.complete { "yes" } else { "no" },
+            complete(self),
             warnings(self),
             self.floor.as_ref().map(floor).unwrap_or_default(),
+            self.left_out.as_ref().map(left_out).unwrap_or_default(),
             self.certificate.as_ref().map(certified).unwrap_or_default(),
         )
     }
@@ -213,6 +219,37 @@ fn warnings(planned: &Planned) -> String {
     fresh.map(|warning| format!("warning   {warning}\n")).collect::<Vec<_>>().concat()
 }
 
+/// Whether the planner achieves the task. A planner counts the floor that its own lanes can reach, so a complete plan may
+/// leave out requested floor.
+fn complete(planned: &Planned) -> String {
+    if !planned.complete {
+        return "no".into();
+    }
+    match planned.left_out.as_ref().filter(|left_out| !left_out.areas.is_empty()) {
+        Some(left_out) => {
+            let share = percent_text(1.0 - left_out.scanned(), 2);
+            format!("as the planner counts; {share} % of the requested floor is left out")
+        }
+        None => "yes".into(),
+    }
+}
+
+/// The most areas that are listed as text.
+const MOST_AREAS: usize = 5;
+
+/// The requested floor that the plan leaves out, as text: the largest areas with their reasons.
+fn left_out(left_out: &LeftOut) -> String {
+    let n = left_out.areas.len();
+    if n == 0 {
+        return String::new();
+    }
+    let areas: String =
+        left_out.areas.iter().take(MOST_AREAS).map(|area| format!("          {area}\n")).collect();
+    let more = n.checked_sub(MOST_AREAS + 1).map(|more| format!("          and {} more\n", more + 1));
+    let plural = if n == 1 { "" } else { "s" };
+    format!("left out  {:.2} m² in {n} area{plural}\n{areas}{}", left_out.area_m2(), more.unwrap_or_default())
+}
+
 /// The floor as text.
 fn floor(floor: &PlannedFloor) -> String {
     let PlannedFloor { swath_m, reachable_m2, shell_margin_m2, untestable_m2, scanned, scanned_exact } =
@@ -266,11 +303,25 @@ mod tests {
     use crate::samples::round_tank;
 
     #[test]
+    fn a_complete_plan_that_leaves_floor_out_says_so_with_its_reasons() {
+        let run = round_tank(0.05);
+        let lanes = (0..14).flat_map(|k| [-3.0, 3.0].map(|x| Point::new(x, -3.9 + 0.6 * f64::from(k))));
+        let plan = Plan { path: lanes.collect(), complete: true, ..Plan::default() };
+        let text =
+            Planned::new(&run, Made { plan, plan_time_ms: 1.0, reason: None, warnings: vec![] }).human();
+        assert!(text.contains("complete  as the planner counts; "), "{text}");
+        assert!(
+            text.contains("\nleft out  ") && text.contains("no lane of the plan runs along it here"),
+            "{text}"
+        );
+    }
+
+    #[test]
     fn a_time_that_cannot_be_told_from_the_way_to_the_planner_is_no_figure() {
         let run = round_tank(0.05);
         let planned = |plan_time_ms| {
             let made = Made { plan: Plan::default(), plan_time_ms, reason: None, warnings: vec![] };
-            Planned::new(&run.mission, &run.world, made)
+            Planned::new(&run, made)
         };
         assert_eq!(planned(0.014).plan_time_ms, None);
         assert!(planned(0.014).human().contains("computed  in under 0.05 ms\n"));

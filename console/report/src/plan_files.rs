@@ -99,7 +99,7 @@ mod tests {
         let leg = |first, last| planner_api::Leg { first, last, tag: LegTag::Travel };
         let plan = Plan { path, legs: vec![leg(0, 1), leg(1, 2)], ..Plan::default() };
         let made = Made { plan, plan_time_ms: 1.0, reason: None, warnings: vec![] };
-        let planned = Planned::new(&run.mission, &run.world, made);
+        let planned = Planned::new(&run, made);
         let numbers: Vec<usize> = planned.lines().map(|(number, ..)| number).collect();
         assert_eq!(numbers, [2]);
         let text = planned.geojson(&run.world, &account::Inspection::default());

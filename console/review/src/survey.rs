@@ -1,12 +1,12 @@
 //! The map of a past survey.
 
-use exploration::SurveyMap;
+use exploration::{SurveyMap, column_numbers};
 use flight::{failure::bad_input, planners::COVERAGE_PLANNER};
 use mission::{EventKind, RunOpened};
 use recording::{Ticks, journal_of};
 use runs::{Standing, standing};
 use scenario::{Scenario, cover_of_map};
-use std::path::Path;
+use std::{collections::BTreeMap, path::Path};
 
 /// A past survey.
 pub struct PastSurvey {
@@ -14,6 +14,8 @@ pub struct PastSurvey {
     pub opened: RunOpened,
     /// The map that it made.
     pub map: SurveyMap,
+    /// The numbers of its columns, as in the log and on the screen.
+    pub numbers: Vec<usize>,
 }
 
 /// The survey of the run in a folder.
@@ -24,11 +26,18 @@ pub struct PastSurvey {
 pub fn past_survey(folder: &Path) -> anyhow::Result<PastSurvey> {
     let mut ticks = Ticks::open(&journal_of(folder))?;
     let opened = ticks.opened()?.clone();
-    let mut map = None;
+    let (mut map, mut found) = (None, BTreeMap::new());
     while let Some(tick) = ticks.next_tick()? {
         for event in tick.events() {
-            if let EventKind::Mapped { map: made } = event {
-                map = Some(SurveyMap::clone(made));
+            match event {
+                EventKind::Mapped { map: made } => map = Some(SurveyMap::clone(made)),
+                EventKind::ObstacleFound { obstacle } => {
+                    found.insert(obstacle.id, (obstacle.name.clone(), obstacle.shape.center()));
+                }
+                EventKind::ObstacleMoved { id, obstacle } => {
+                    found.entry(*id).and_modify(|(_, at)| *at = obstacle.shape.center());
+                }
+                _ => {}
             }
         }
     }
@@ -55,7 +64,8 @@ pub fn past_survey(folder: &Path) -> anyhow::Result<PastSurvey> {
     if map.states().is_none() {
         return Err(refused("the map in the journal is damaged; survey again"));
     }
-    Ok(PastSurvey { opened, map })
+    let numbers = column_numbers(&map.columns, found.values().map(|(name, at)| (name.as_str(), *at)));
+    Ok(PastSurvey { opened, map, numbers })
 }
 
 /// The scenario that scans the floor that a survey has mapped, for the console; `None` for a run that was not a survey.
@@ -68,7 +78,7 @@ pub(crate) fn scan_of_map(folder: &Path) -> anyhow::Result<Option<Scenario>> {
     }
     let survey = past_survey(folder)?;
     let run = folder.file_name().unwrap_or_default().to_string_lossy();
-    let text = cover_of_map(&survey.opened, &run, &survey.map, COVERAGE_PLANNER)
+    let text = cover_of_map(&survey.opened, &run, (&survey.map, &survey.numbers), COVERAGE_PLANNER)
         .map_err(|error| bad_input(format!("{run}: {error}")))?;
     let scenario = Scenario::parse(&text, &format!("the scan of the map of {run}"));
     scenario.map(Some).map_err(|errors| bad_input(errors.render()))

@@ -39,7 +39,8 @@ pub enum MapError {
 }
 
 /// Changes the scenario of a survey into a mission that scans the mapped floor with a planner. The columns on the map
-/// are the drawing; comments state their standard deviations. `run` is the name of the survey's run.
+/// are the drawing, with their numbers in the log of the survey; comments state their standard deviations. `run` is the name of
+/// the survey's run.
 ///
 /// # Errors
 /// The scenario of the run cannot be parsed because its journal was changed, or the robot could drive onto floor that the
@@ -47,7 +48,7 @@ pub enum MapError {
 pub fn cover_of_map(
     opened: &RunOpened,
     run: &str,
-    map: &SurveyMap,
+    (map, numbers): (&SurveyMap, &[usize]),
     planner: &str,
 ) -> Result<String, MapError> {
     let unseen = map.unseen(&opened.world.boundary, opened.mission.limits.radius_m);
@@ -67,8 +68,10 @@ pub fn cover_of_map(
         first.leaf_decor_mut().set_prefix(head(&foreign::plain(run), map));
     }
     let mut obstacles = ArrayOfTables::new();
-    for (n, column) in map.columns.iter().enumerate() {
-        obstacles.push(of_column(n + 1, column));
+    let mut columns: Vec<(usize, &Column)> = numbers.iter().copied().zip(&map.columns).collect();
+    columns.sort_by_key(|(number, _)| *number);
+    for (number, column) in columns {
+        obstacles.push(of_column(number, column));
     }
     for (n, shape) in map.others.iter().enumerate() {
         obstacles.extend(of_shape(n + 1, shape));

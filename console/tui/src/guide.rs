@@ -33,6 +33,7 @@ pub fn name(cause: &Cause, of: &Run) -> String {
             let what = if is_by_order { "excluded" } else { "rejected" };
             format!("station {} {what}", of.station_name(*id).trim_start_matches("station "))
         }
+        Cause::Map if of.finds_only_moving() => "moving obstacle".into(),
         Cause::Map => "new obstacle, not on drawing".into(),
         Cause::NotThere(name) => format!("{} not found", text::fit(name, 18)),
         Cause::Tether(word) => tether::name(word),
@@ -64,6 +65,7 @@ pub fn meaning(cause: &Cause, of: &Run) -> Guide {
     match cause {
         Cause::Station(id) => of.position.exclusion(*id).map_or(position::STATION, position::excluded),
         Cause::Tether(word) if word == "reel" && of.is_survey() => tether::REEL_OF_SURVEY,
+        Cause::Map if of.finds_only_moving() => drawing::MOVING,
         cause => guide(cause),
     }
 }

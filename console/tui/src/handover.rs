@@ -8,7 +8,7 @@ use crate::model::{
 };
 use crate::view::{Bases, by_command};
 use account::{Area, MissReason};
-use mission::{EventKind, Order, TaskConfig};
+use mission::{EventKind, Order, TaskConfig, event::SLACK_M};
 use world::ZoneKind;
 
 /// The page as Markdown, from the state of the console; it ends with a line break.
@@ -22,13 +22,15 @@ pub fn page(model: &Model) -> String {
         ("Open alarms", alarms(model, Alarm::is_open)),
         ("Shelved alarms", alarms(model, |alarm| matches!(alarm.state, State::Shelved(_)))),
         ("No-go zones", zones(model)),
+        ("Tether", tether(model)),
         ("Clearance", clearance(model)),
         ("Work done", done(model)),
         ("Floor missed or left out", floor(model)),
         ("Starts, holds and ends", holds(model)),
         ("Decisions of the operator", decisions(model)),
     ];
-    for (title, lines) in sections {
+    let has_tether = run.about.as_ref().is_some_and(|about| about.mission.tether.is_some());
+    for (title, lines) in sections.into_iter().filter(|(title, _)| has_tether || *title != "Tether") {
         page.extend(["\n## ", title, "\n\n"]);
         let lines = if lines.is_empty() { vec!["None.".into()] } else { lines };
         page.extend(lines.iter().map(|line| format!("- {}\n", plain(line))));
@@ -51,7 +53,7 @@ fn plain(text: &str) -> String {
 fn state(model: &Model) -> Vec<String> {
     let live = &model.live;
     let run = &live.run;
-    let mut lines = vec![by_command(model).first().cloned().unwrap_or_default()];
+    let mut lines: Vec<String> = clauses(model, false);
     let operator =
         model.console.preferences.operator.as_deref().unwrap_or("not named (`operator` in config.toml)");
     lines.push(format!("Operator: {operator}"));
@@ -73,19 +75,56 @@ fn state(model: &Model) -> Vec<String> {
 }
 
 fn next(model: &Model) -> Vec<String> {
-    let mut lines: Vec<String> = by_command(model).into_iter().skip(1).collect();
-    if let Some(progress) = &model.live.run.progress {
-        lines.push(format!("Path {:.0} % done", 100.0 * progress.done));
+    clauses(model, true)
+}
+
+/// The clauses of the state line that name a command, as the next steps do, or the others: the state and its reason.
+fn clauses(model: &Model, with_command: bool) -> Vec<String> {
+    let clauses = by_command(model).into_iter().enumerate();
+    let named = clauses.filter(|(index, clause)| (*index > 0 && clause.contains('`')) == with_command);
+    named.map(|(_, clause)| clause).collect()
+}
+
+/// The tether as it is now: the length out, the wrap, the pulls, the slack and the way back.
+fn tether(model: &Model) -> Vec<String> {
+    let run = &model.live.run;
+    let Some(tether) = &run.tether else { return vec!["Not known yet".into()] };
+    let limits = run.about.as_ref().and_then(|about| Some(about.mission.tether.as_ref()?.limits));
+    if tether.is_broken {
+        let noticed =
+            tether.broke_out_m.map_or_else(String::new, |m| format!(", {m:.1} m when it was noticed"));
+        return vec![
+            format!("TORN: {:.1} m off the reel now{noticed}", tether.length_m),
+            "The rest lies on the floor; the robot may drive over it".into(),
+        ];
     }
-    let is_on_task = !model.live.run.phase().is_return();
-    lines.extend(
-        model
-            .live
-            .left_s()
-            .filter(|_| is_on_task)
-            .map(|left_s| format!("About {} of mission time left", clock(left_s))),
-    );
-    lines
+    let of_reel = limits.map_or_else(String::new, |limits| format!(" of {:.1} m", limits.reel_length_m));
+    let out = format!("Out: {:.1}{of_reel}, {:.1} m left on the reel", tether.length_m, tether.free_m);
+    let wrap = match tether.largest() {
+        _ if tether.is_snagged => "SNAGGED: wrap and way back are not known".to_owned(),
+        None => "Wrap: none, the tether is straight".to_owned(),
+        Some(most) => {
+            let limit = limits.map_or_else(String::new, |limits| {
+                format!(" (limit {:.0}°)", limits.wrap_max_rad.to_degrees())
+            });
+            let total_deg = tether.wrap_total_rad.to_degrees();
+            format!("Wrap: {:.0}° on {}{limit}, {total_deg:.0}° in total", tether.largest_deg(), most.on)
+        }
+    };
+    let needed = tether.pull_n.zip(run.reel());
+    let needed = needed.map(|(n, reel)| format!("Reel needs: {n:.1} of {:.1} N", reel.pull_n));
+    let felt = tether.measured.map(|measured| {
+        let most = run.robot_pull_most_n().filter(|_| !run.is_live());
+        let most = most.map_or_else(String::new, |most_n| format!(" of {most_n:.1}"));
+        let place = if run.is_live() { "Pull at the reel" } else { "Robot pull" };
+        format!("{place}: {:.1}{most} N, slack {:.2} of {SLACK_M:.2} m", measured.pull_n, measured.slack_m)
+    });
+    let back = match tether.return_length_m {
+        _ if tether.is_snagged => None,
+        Some(way_m) => Some(format!("Way back along the tether: clear, {way_m:.1} m")),
+        None => Some("Way back along the tether: BLOCKED, the hull does not fit".to_owned()),
+    };
+    [Some(out), Some(wrap), needed, felt, back].into_iter().flatten().collect()
 }
 
 fn alarms(model: &Model, is_listed: impl Fn(&Alarm) -> bool) -> Vec<String> {
@@ -156,10 +195,14 @@ fn done(model: &Model) -> Vec<String> {
         format!("In doubt: {}{at}", doubt.floor)
     });
     let moving = format!("Mission time {}, under way {}", clock(run.clock.t_s), clock(run.clock.moving_s));
+    let path = run.progress.as_ref().map(|progress| format!("Path {:.0} % done", 100.0 * progress.done));
+    let is_on_task = !run.phase().is_return();
+    let left_s = model.live.left_s().filter(|_| is_on_task && !run.has_ended());
+    let left = left_s.map(|left_s| format!("About {} of mission time left", clock(left_s)));
     let taken_back = model.live.together().and_then(|all| all.taken_back);
     let regained = taken_back.map(|floor| format!("All runs: {floor}"));
     let floor = before.into_iter().chain(scanned).chain(in_doubt).chain(regained);
-    task.map(str::to_owned).into_iter().chain(floor).chain([moving]).collect()
+    task.map(str::to_owned).into_iter().chain(path).chain(floor).chain([moving]).chain(left).collect()
 }
 
 /// What the operator decided: the decisions in the journal, then the acknowledgements after the end of the mission, which

@@ -55,7 +55,7 @@ pub use live::{Access, Busy, Live, RunId, RunResult, Source};
 pub use log::{Entry, Log};
 pub use palette::Palette;
 pub use planning::{Lane, Offer, PlanShown, Planning};
-pub use plans::{Ghost, GhostPlan, Plans};
+pub use plans::{Ghost, GhostPlan, Plans, Promise};
 pub use position::Position;
 pub use preflight::Preflight;
 pub use preset::Preset;

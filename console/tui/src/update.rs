@@ -25,7 +25,7 @@ pub(crate) mod remedies;
 pub(crate) mod replay;
 pub(crate) mod review;
 pub(crate) mod send;
-mod setting;
+pub(crate) mod setting;
 pub(crate) mod shadow;
 pub(crate) mod stations;
 pub(crate) mod typing;

@@ -197,8 +197,9 @@ fn warn(worth: &Worth, preferences: &Preferences, scope: &Scope<'_>, scans_enoug
         warn("no candidate keeps the cable within the preferred length and wrap");
     }
     // The console counts by the mission's cells; here, a cell counts only if the lanes sweep the whole of it.
-    let scanned =
-        format!("the plan sweeps {share} % of the requested floor as the planner counts it, in whole cells");
+    let scanned = format!(
+        "the plan scans {share} % of the requested floor, counted in cells that lie whole under its lanes"
+    );
     match (scans_enough, has_reel) {
         (true, _) => {}
         (false, true) => {

@@ -1,10 +1,9 @@
 //! Requested floor that a plan does not scan, with the reasons, before anything moves.
 
 use super::{Area, Evidence, MissReason, Slivers, areas, plate_map};
-use crate::estimate::scanned_along;
 use mission::{TaskConfig, event::RunOpened};
 use serde::{Deserialize, Serialize};
-use world::{Point, Pose, polyline};
+use world::{CoverageGrid, Point, Pose, polyline};
 
 /// Where a plan that continues earlier runs begins to scan, and what it scans a second time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -39,11 +38,26 @@ impl LeftOut {
     ///
     /// Visits every cell along the path and every cell of the floor.
     pub fn of(run: &RunOpened, path: &[Point], cuts: &[Vec<Point>], is_whole: bool) -> Option<Self> {
+        Self::after(run, &CoverageGrid::new(run.floor.clone()), path, cuts, is_whole)
+    }
+
+    /// The same for a plan that is made on the way: floor that the run has `scanned` so far is not left out. The floor of
+    /// `scanned` is that of the moment, with the zones drawn since the start.
+    pub fn after(
+        run: &RunOpened,
+        scanned: &CoverageGrid,
+        path: &[Point],
+        cuts: &[Vec<Point>],
+        is_whole: bool,
+    ) -> Option<Self> {
         let TaskConfig::Cover { .. } = run.mission.task else { return None };
         let mut evidence = Evidence::new(run);
-        let grid = scanned_along(run.floor.clone(), path, run.mission.swath_m);
+        let mut grid = scanned.clone();
+        for pair in path.windows(2) {
+            grid.mark_swath(pair[0], pair[1], run.mission.swath_m);
+        }
         evidence.plan(path, cuts, is_whole);
-        let floor = &run.floor;
+        let floor = scanned.floor();
         let is_requested = |cell: usize| floor.is_reachable(cell) && evidence.is_asked(cell);
         let reasons = evidence.reasons(run);
         let why = |cell: usize| {
@@ -106,6 +120,34 @@ mod tests {
         let largest = &left_out.areas[0];
         assert_eq!(largest.reason, MissReason::NotPlanned);
         assert!(largest.area_m2 >= left_out.areas.last().map_or(0.0, |area| area.area_m2));
+    }
+
+    #[test]
+    fn a_plan_made_on_the_way_does_not_leave_out_what_was_scanned_before() {
+        let run = round_tank(0.05);
+        let first = LeftOut::of(&run, &lane(0.0), &[], true).expect("the task is to scan");
+        let mut scanned = CoverageGrid::new(run.floor.clone());
+        scanned.mark_swath(lane(0.0)[0], lane(0.0)[1], run.mission.swath_m);
+        let after = LeftOut::after(&run, &scanned, &[], &[], true).expect("the task is to scan");
+        assert!((after.scanned() - first.scanned()).abs() < 1e-12);
+        let both = LeftOut::after(&run, &scanned, &lane(1.0), &[], true).expect("the task is to scan");
+        assert!((both.scanned() - 2.0 * first.scanned()).abs() < 0.02, "{both:?}");
+    }
+
+    #[test]
+    fn floor_beside_the_shell_where_a_lane_has_room_is_not_left_out_for_its_clearance() {
+        let run = round_tank(0.05);
+        // Lanes straight across leave out sickles along the shell, where a lane along the shell would have room.
+        let lanes: Vec<Point> = (0..14).flat_map(|k| lane(-3.9 + 0.6 * f64::from(k))).collect();
+        let left_out = LeftOut::of(&run, &lanes, &[], true).expect("the task is to scan");
+        let causes: Vec<_> = left_out.areas.iter().flat_map(|area| &area.causes).collect();
+        assert!(causes.iter().all(|cause| cause.reason != MissReason::Clearance), "{causes:?}");
+        let along = causes.iter().find(|cause| cause.reason == MissReason::NoLaneBeside).expect("a sickle");
+        assert!(
+            along.text.ends_with(" m from the shell, and no lane of the plan runs along it here"),
+            "{}",
+            along.text
+        );
     }
 
     #[test]

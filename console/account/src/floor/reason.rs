@@ -20,6 +20,9 @@ pub enum MissReason {
     Narrow,
     /// No plan led to the floor, because a plan keeps hull and clearance from solid objects.
     Clearance,
+    /// No plan led to the floor, although a lane that keeps hull and clearance from the solid object beside it has room
+    /// there.
+    NoLaneBeside,
     /// No plan led to the floor, because it is along a line that keeps the tether unwound.
     Wrap,
     /// No plan led to the floor.
@@ -87,6 +90,12 @@ impl Explained for MissReason {
                     measure.range()
                 )
             }
+            Self::NoLaneBeside => {
+                format!(
+                    "not planned: {} from {near}, and no lane of the plan runs along it here",
+                    measure.range()
+                )
+            }
             Self::Wrap => "not planned: would wind the tether".to_owned(),
             Self::NotPlanned => format!(
                 "not planned: up to {value_m:.2} m from the planned lanes (lanes \
@@ -122,6 +131,7 @@ impl MissReason {
             Self::NotAsked => "not requested",
             Self::Narrow => "outside the outermost lane",
             Self::Clearance => "not planned (clearance)",
+            Self::NoLaneBeside => "not planned (no lane along it)",
             Self::Wrap => "not planned (tether)",
             Self::NotPlanned => "not planned",
             Self::NoPlan => "the run had no plan",
@@ -141,6 +151,7 @@ impl MissReason {
             Self::NotAsked => "not requested",
             Self::Narrow => "outside the outermost lane",
             Self::Clearance => "not planned (too little room for hull and clearance)",
+            Self::NoLaneBeside => "not planned: no lane of the plan runs along the solid object here",
             Self::Wrap => "not planned: would wind the tether",
             Self::NotPlanned => "not planned",
             Self::NoPlan => "the run had no plan when it ended",

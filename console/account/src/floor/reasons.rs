@@ -6,7 +6,7 @@ use super::{
     reason::{MissReason, OutOfReach},
 };
 use std::collections::{BTreeMap, BTreeSet};
-use world::{Cell, CoverageGrid, Point, polyline, tether::Reach};
+use world::{Cell, CoverageGrid, Point, Vector, polyline, tether::Reach};
 
 /// The names of the zones of some cells, the zone with the most cells first; `None` without zones.
 fn named<'a>(zones: impl Iterator<Item = &'a Solid>) -> Option<String> {
@@ -16,6 +16,17 @@ fn named<'a>(zones: impl Iterator<Item = &'a Solid>) -> Option<String> {
     names.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
     let names: Vec<&str> = names.into_iter().map(|(name, _)| name).collect();
     (!names.is_empty()).then(|| names.join(" and "))
+}
+
+/// The number of directions in which room for a lane is looked for.
+const DIRECTIONS: u32 = 24;
+/// The loss of room because of the few directions in which it is looked for, metres.
+const ROOM_SLACK_M: f64 = 0.01;
+
+/// One of [`DIRECTIONS`] unit vectors.
+fn direction(k: u32) -> Vector {
+    let angle_rad = std::f64::consts::TAU * f64::from(k) / f64::from(DIRECTIONS);
+    Vector::new(angle_rad.cos(), angle_rad.sin())
 }
 
 /// The largest number of channels that are named one by one.
@@ -83,12 +94,21 @@ impl Reasons<'_> {
         } else if self.beyond_lanes_m(place) > 0.0 {
             MissReason::Narrow
         } else if solid_m < self.room_m {
-            MissReason::Clearance
+            let has_room = self.has_room_for_lane(place, self.room_m - solid_m);
+            if has_room { MissReason::NoLaneBeside } else { MissReason::Clearance }
         } else if self.has_tether && self.cut_m(place).is_some_and(|cut_m| cut_m <= self.lane_m) {
             MissReason::Wrap
         } else {
             MissReason::NotPlanned
         }
+    }
+
+    /// Whether the robot can stand near enough to a position that a lane there scans the position, and yet keep hull
+    /// and clearance from every solid object; the position lies `short_m` too near to the nearest one, metres.
+    fn has_room_for_lane(&self, place: Point, short_m: f64) -> bool {
+        let stands = |at: Point| self.evidence.nearest_kept_from(at).1 >= self.room_m - ROOM_SLACK_M;
+        let around = |away_m: f64| (0..DIRECTIONS).map(move |k| place + away_m * direction(k));
+        around(short_m).chain(around(self.lane_m / 2.0)).any(stands)
     }
 
     /// The value behind a reason, computed over the cells to which the reason applies.
@@ -123,7 +143,7 @@ impl Reasons<'_> {
             MissReason::Narrow => most(&|cell| Some(self.beyond_lanes_m(floor.center(cell))))
                 .filter(|beyond_m| *beyond_m > 0.0)
                 .map(|m| Measure::of(m).against(self.lane_m)),
-            MissReason::Clearance => {
+            MissReason::Clearance | MissReason::NoLaneBeside => {
                 Measure::off(cells.iter().map(|cell| solid(*cell))).map(|m| m.against(self.room_m))
             }
             MissReason::Wrap => least(&|cell| self.cut_m(floor.center(cell))).map(Measure::of),

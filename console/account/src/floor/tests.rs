@@ -109,7 +109,7 @@ fn lanes_that_were_not_flown_are_reported_with_place_plate_and_reason() {
     // Floor that was not planned touches this area, so they form one area with a cause for each part.
     let reasons: Vec<MissReason> = north.causes.iter().map(|cause| cause.reason).collect();
     assert!(
-        reasons.contains(&MissReason::Clearance) && reasons.contains(&MissReason::NotPlanned),
+        reasons.contains(&MissReason::NoLaneBeside) && reasons.contains(&MissReason::NotPlanned),
         "{north:?}"
     );
     let parts_m2: f64 = north.causes.iter().map(|cause| cause.area_m2).sum();
@@ -228,7 +228,7 @@ fn every_gap_has_a_cause_with_its_number() {
         why(&run, &evidence, |p| p.x > 4.0 && p.coords.norm() > 4.77 && p.y.abs() < 0.3),
         "m (lane width 0.40 m)",
     );
-    says(why(&run, &evidence, square(0.0, 3.4)), "m from column, but hull and clearance require 0.45 m");
+    says(why(&run, &evidence, square(0.0, 3.4)), "m from column, and no lane of the plan runs along it here");
     says(why(&run, &evidence, square(0.0, 0.2)), "not planned: would wind the tether");
     let untethered =
         RunOpened { mission: mission::MissionConfig { tether: None, ..run.mission.clone() }, ..run.clone() };
@@ -510,14 +510,17 @@ fn floor_in_a_drawn_zone_names_it_and_so_does_floor_that_it_closes_off() {
 }
 
 #[test]
-fn floor_that_is_missed_beside_a_drawn_zone_is_missed_for_its_clearance() {
+fn floor_beside_a_drawn_zone_is_missed_for_its_clearance_only_where_no_lane_has_room() {
     let run = round_tank(0.05);
     let mut evidence = Evidence::new(&run);
     let zone = rectangle((1.0, -1.0), (2.5, 0.5));
     evidence.plan(&lanes()[..2], &[], true);
     evidence.forbid("no-go zone no-go 1, drawn by the operator at 12.0 s".into(), &zone);
-    assert_eq!(why_missed(&evidence, &run, 0.72, 0.0), MissReason::Clearance);
+    assert_eq!(why_missed(&evidence, &run, 0.72, 0.0), MissReason::NoLaneBeside);
     assert_eq!(why_missed(&evidence, &run, -2.0, 0.0), MissReason::NotPlanned);
+    // Between two zones, 0.8 m apart, hull and clearance (0.9 m) do not fit.
+    evidence.forbid("no-go zone no-go 2".into(), &rectangle((0.0, -1.0), (0.2, 0.5)));
+    assert_eq!(why_missed(&evidence, &run, 0.62, -0.22), MissReason::Clearance);
     let reasons = evidence.reasons(&run);
     let cell = run.floor.cell_at(Point::new(0.72, 0.0)).expect("a place on the floor");
     let measure = reasons.measure(&CoverageGrid::new(run.floor.clone()), MissReason::Clearance, &[cell]);

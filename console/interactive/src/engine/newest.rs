@@ -27,6 +27,11 @@ impl Newest {
 }
 
 impl Turn {
+    /// Whether no newer work has begun.
+    pub(super) fn is_newest(&self) -> bool {
+        *locked(&self.newest) == self.n
+    }
+
     /// Sends a result unless newer work has begun. A newer result is always sent after an older one.
     pub(super) fn give(&self, send: impl FnOnce()) {
         let newest = locked(&self.newest);

@@ -4,7 +4,7 @@ use super::{
     deck::{Deck, Moved},
     reel::Reel,
 };
-use crate::inbox::RunOutbox;
+use crate::{inbox::RunOutbox, promise};
 use anyhow::Context;
 use recording::JournalError;
 use runs::{Past, Standing, find, read_notes, standing, write_notes};
@@ -235,6 +235,9 @@ fn load(folder: &Path, side: Side, screen: &RunOutbox, wake: &Sender<Request>) -
     })?;
     let (own, folder) = (screen.clone(), folder.to_owned());
     let began = thread::Builder::new().name("replay report".into()).spawn(move || {
+        if side == Side::A {
+            promise::read(&folder, &own);
+        }
         // Without a trustworthy report, only the journal can be shown.
         let summary = match standing(&folder) {
             Standing::Ended(summary) | Standing::NotRecorded(summary, _) => summary,

@@ -158,7 +158,10 @@ impl Known {
                 let asked = if self.task.is_in_part() {
                     let n_left = self.task.floor_left(&self.floor.coverage).len();
                     let left_m2 = n_left as f64 * self.floor.coverage.floor().cell_m2();
-                    format!(", {left_m2:.2} m² of the requested floor missed")
+                    match format!("{left_m2:.2}").as_str() {
+                        "0.00" => ", nothing of the requested floor missed".to_owned(),
+                        left => format!(", {left} m² of the requested floor missed"),
+                    }
                 } else {
                     String::new()
                 };

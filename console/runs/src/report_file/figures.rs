@@ -1,6 +1,6 @@
 //! Compares the figures of a report with those derived from its journal.
 
-use account::{Account, Figure, FigureId, Limit, Summary};
+use account::{Account, Cause, Explained, Figure, FigureId, Limit, MissReason, Summary};
 use report::first_difference;
 use serde_json::Value;
 
@@ -43,6 +43,13 @@ fn leave_out_new(computed: &mut Summary, reported: &Summary) {
     if let (Some(computed), Some(Account { requested: None, .. })) = (&mut computed.floor, &reported.floor) {
         computed.requested = None;
     }
+    let knows_beside = |account: &Account| {
+        let areas = account.missed.iter().flat_map(|area| &area.causes);
+        areas.chain(&account.slivers.causes).any(|cause| cause.reason == MissReason::NoLaneBeside)
+    };
+    if !reported.floor.as_ref().is_some_and(knows_beside) {
+        computed.floor.iter_mut().for_each(merge_beside);
+    }
     let mut plates = reported.floor.iter().flat_map(|floor| &floor.plates);
     let is_older = plates.all(|plate| plate.error_max_m.is_none());
     for plate in computed.floor.iter_mut().flat_map(|floor| &mut floor.plates).filter(|_| is_older) {
@@ -53,6 +60,39 @@ fn leave_out_new(computed: &mut Summary, reported: &Summary) {
     for plate in computed.floor.iter_mut().flat_map(|floor| &mut floor.plates).filter(|_| has_no_truth) {
         (plate.true_error_p95_m, plate.true_error_max_m) = (None, None);
     }
+}
+
+/// Older reports give too little room as the reason for all floor beside solid objects, even where a lane has room.
+fn merge_beside(account: &mut Account) {
+    let slivers = &mut account.slivers.causes;
+    account.missed.iter_mut().map(|area| &mut area.causes).chain([slivers]).for_each(merge_causes);
+    for area in &mut account.missed {
+        area.reason = area.causes.first().map_or(area.reason, |cause| cause.reason);
+    }
+}
+
+fn merge_causes(causes: &mut Vec<Cause<MissReason>>) {
+    let is_beside = |cause: &Cause<MissReason>| cause.reason == MissReason::NoLaneBeside;
+    let Some(index) = causes.iter().position(is_beside) else { return };
+    let beside = causes.remove(index);
+    match causes.iter_mut().find(|cause| cause.reason == MissReason::Clearance) {
+        Some(cause) => {
+            cause.area_m2 += beside.area_m2;
+            if let (Some(own), Some(other)) = (&mut cause.measure, beside.measure) {
+                let most_m = own.to_m.into_iter().chain(other.to_m).reduce(f64::max);
+                if other.value_m < own.value_m {
+                    *own = other;
+                }
+                own.to_m = most_m;
+            }
+            cause.text = cause.reason.sentence(cause.measure.as_ref());
+        }
+        None => {
+            let text = MissReason::Clearance.sentence(beside.measure.as_ref());
+            causes.push(Cause { reason: MissReason::Clearance, text, ..beside });
+        }
+    }
+    causes.sort_by(|a, b| b.area_m2.total_cmp(&a.area_m2).then(a.reason.cmp(&b.reason)));
 }
 
 /// Words the computed causes like the reported ones, where both state the same figures. Reason and measure of a cause say
@@ -104,6 +144,29 @@ mod tests {
     fn found(reported: &Value, mut computed: Value) -> Option<String> {
         reword(&mut computed, reported);
         first_difference(reported, &computed).map(|found| found.key)
+    }
+
+    #[test]
+    fn an_older_report_has_one_reason_for_all_floor_beside_solid_objects() {
+        let cause = |reason, area_m2, value_m: f64, to_m: f64| {
+            let measure = json!({ "value_m": value_m, "to_m": to_m, "limit_m": 0.45, "near": "the shell" });
+            let measure = Some(serde_json::from_value(measure).expect("a measure"));
+            Cause { reason, area_m2, measure, text: String::new() }
+        };
+        let mut causes = vec![
+            cause(MissReason::NoLaneBeside, 2.0, 0.2, 0.4),
+            cause(MissReason::NotPlanned, 1.5, 0.3, 0.3),
+            cause(MissReason::Clearance, 1.0, 0.1, 0.3),
+        ];
+        merge_causes(&mut causes);
+        let reasons: Vec<MissReason> = causes.iter().map(|cause| cause.reason).collect();
+        assert_eq!(reasons, [MissReason::Clearance, MissReason::NotPlanned]);
+        assert!((causes[0].area_m2 - 3.0).abs() < 1e-12);
+        let text = "not planned: 0.10 to 0.40 m from the shell, but hull and clearance require 0.45 m";
+        assert_eq!(causes[0].text, text);
+        let mut alone = vec![cause(MissReason::NoLaneBeside, 2.0, 0.2, 0.4)];
+        merge_causes(&mut alone);
+        assert_eq!(alone[0].reason, MissReason::Clearance);
     }
 
     #[test]

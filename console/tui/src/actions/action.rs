@@ -12,6 +12,8 @@ use crate::update::Effect;
 pub enum Risk {
     /// Cannot make the robot move and loses nothing.
     Safe,
+    /// Changes how the robot will move, but does not make it move; asks for confirmation first.
+    Changes,
     /// Can make the robot move; asks for confirmation first.
     Moves,
     /// Ends the mission; asks for confirmation first.
@@ -23,6 +25,7 @@ impl Risk {
     pub fn word(self) -> &'static str {
         match self {
             Self::Safe => "safe",
+            Self::Changes => "ASKS",
             Self::Moves => "MOVES",
             Self::Destroys => "ENDS",
         }

@@ -145,13 +145,17 @@ pub fn duration_s(text: &str) -> Result<f64, String> {
     if total_s > 0.0 { Ok(total_s) } else { Err(wrong()) }
 }
 
-/// Parses a moment of a run such as `01:12:30`, `12:30`, `T+00:12:30` or `12m30s`; returns seconds of mission time.
+/// Parses a moment of a run such as `01:12:30`, `12:30`, `T+00:12:30`, `12m30s` or `46` (seconds, as in a filter); returns
+/// seconds of mission time.
 ///
 /// # Errors
 /// Returns a message with the expected format.
 pub fn moment_s(text: &str) -> Result<f64, String> {
-    let wrong = || format!("invalid time `{text}`; write 01:12:30, 12:30 or 12m30s");
+    let wrong = || format!("invalid time `{text}`; write 01:12:30, 12:30, 12m30s or seconds");
     let text = text.strip_prefix("T+").unwrap_or(text);
+    if let Ok(seconds) = text.parse::<f64>() {
+        return Some(seconds).filter(|seconds| seconds.is_finite() && *seconds >= 0.0).ok_or_else(wrong);
+    }
     if !text.contains(':') {
         return duration_s(text).map_err(|_| wrong());
     }
@@ -173,11 +177,12 @@ mod tests {
 
     #[test]
     fn moments_are_clock_times_or_spans() {
-        for (text, seconds) in [("01:12:30", 4350.0), ("12:30", 750.0), ("T+00:00:05.5", 5.5), ("2m", 120.0)]
+        for (text, seconds) in
+            [("01:12:30", 4350.0), ("12:30", 750.0), ("T+00:00:05.5", 5.5), ("2m", 120.0), ("46", 46.0)]
         {
             assert_eq!(moment_s(text), Ok(seconds), "{text}");
         }
-        for wrong in ["", "12", "1:2:3:4", ":", "1:-2", "1:x", "T+"] {
+        for wrong in ["", "-12", "inf", "1:2:3:4", ":", "1:-2", "1:x", "T+"] {
             assert!(moment_s(wrong).is_err(), "{wrong}");
         }
     }

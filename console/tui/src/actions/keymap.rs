@@ -239,6 +239,7 @@ fn in_brackets(screens: &[&str]) -> String {
 fn deed(risk: Risk) -> &'static str {
     match risk {
         Risk::Safe => "is harmless",
+        Risk::Changes => "changes how the robot moves; use a capital letter, F key or Ctrl",
         Risk::Moves => "moves the robot; use a capital letter, F key or Ctrl",
         Risk::Destroys => "ends the mission; use a capital letter, F key or Ctrl",
     }

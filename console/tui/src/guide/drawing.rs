@@ -10,6 +10,13 @@ pub(super) const UNKNOWN: Guide = Guide {
     remedies: const { &[SHOW, check("Check what it is: nozzle, sump, debris."), HOLD] },
 };
 
+pub(super) const MOVING: Guide = Guide {
+    cause: "The robot detects an obstacle that moves, such as a cart or a person.",
+    holds: "",
+    effect: "Planners avoid it where it is now. In a scan, the floor that it stands on is not counted.",
+    remedies: const { &[SHOW, check("Check who or what moves in the tank."), HOLD] },
+};
+
 pub(super) const NOT_THERE: Guide = Guide {
     cause: "The scanner sees through the place of an obstacle: it was removed, has moved, or is drawn in the \
     wrong place; or the robot's position is wrong.",

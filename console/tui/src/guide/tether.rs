@@ -147,12 +147,13 @@ fn broken() -> Guide {
         remedies: const {
             &[
                 run("Stay held (HOLD), and fetch robot and tether by hand.", ActionId::Hold),
+                run("Drive back beside the tether that lies on the floor. Asks first.", ActionId::DriveBack)
+                    .when(When::Held),
                 run(
                     "Resume, if the robot has power and a link without its tether. Asks first.",
                     ActionId::Resume,
                 )
                 .when(When::Held),
-                SHOW,
                 END,
             ]
         },

@@ -19,6 +19,9 @@ use world::{Obstacle, ObstacleId};
 
 /// The number of cells of the accuracy forecast along the longer side of the floor.
 const FORECAST_CELLS: f64 = 100.0;
+/// The distance from the place where an obstacle was found beyond which it counts as moving, metres: more than any correction
+/// of its estimated place.
+const MOVES_M: f64 = 0.5;
 
 impl Run {
     /// Folds in one event. Information that only the simulator can have is ignored, except how a simulated cable lies: its
@@ -283,10 +286,14 @@ impl Run {
             about.world.obstacles.retain(|other| other.known || other.id != obstacle.id);
             about.world.obstacles.push(Obstacle { known: false, ..obstacle.clone() });
         }
+        self.found_at.insert(obstacle.id, (obstacle.shape.center(), false));
         self.raise_as_logged(event, Cause::Map);
     }
 
     fn moved(&mut self, id: ObstacleId, obstacle: &Obstacle) {
+        if let Some((found, moves)) = self.found_at.get_mut(&id) {
+            *moves |= (obstacle.shape.center() - *found).norm() > MOVES_M;
+        }
         let found = self.about.iter_mut().flat_map(|about| &mut about.world.obstacles);
         for other in found.filter(|other| !other.known && other.id == id) {
             other.shape = obstacle.shape.clone();

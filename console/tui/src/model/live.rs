@@ -4,7 +4,7 @@ use super::{
     Combination, Earlier, Health, Plans, Preflight, Raster, Replay, Run, Speed, Together, WhatIf, together,
 };
 use account::{Account, Area, Estimate, InDoubt, LeftOut, MissReason, Shares, Summary, TakenBack};
-use mission::{Order, Phase, WayBack, ZoneCost};
+use mission::{AskId, Order, Phase, WayBack, ZoneCost};
 use serde::{Deserialize, Serialize};
 use world::{CellRun, Point, StationId};
 
@@ -197,11 +197,36 @@ impl Live {
         self.run.left_s().or_else(|| promised().filter(|_| !self.run.has_ended()))
     }
 
-    /// The requested floor that the promised plan leaves out; `None` if it is not known, or nothing is to be scanned.
+    /// The requested floor that stays out with the current plan or, until that is known, with the plan of the start;
+    /// `None` if it is not known, or nothing is to be scanned.
     pub fn left_out(&self) -> Option<&LeftOut> {
-        let (ask, left_out) = self.plans.left_out.as_ref()?;
-        let is_current = self.run.planning.plan.as_ref().is_some_and(|plan| plan.ask == *ask);
-        (is_current || *self.run.phase() != Phase::Waiting).then_some(left_out)
+        self.left_out_by_plan().or_else(|| self.left_out_at_start())
+    }
+
+    /// The requested floor that stays out with the current plan; `None` if it is not known.
+    pub fn left_out_by_plan(&self) -> Option<&LeftOut> {
+        let current = self.run.planning.plan.as_ref()?.ask;
+        let known = [&self.plans.left_out_now, &self.plans.left_out].into_iter().flatten();
+        known.filter(|(ask, _)| *ask == current).map(|(_, left_out)| left_out).next()
+    }
+
+    /// The requested floor that the plan of the start leaves out; `None` before the start, or if it is not known.
+    pub fn left_out_at_start(&self) -> Option<&LeftOut> {
+        let (_, left_out) = self.plans.left_out.as_ref()?;
+        (*self.run.phase() != Phase::Waiting).then_some(left_out)
+    }
+
+    /// Takes the floor that a plan leaves out; the first of a mission under way is that of the start.
+    pub(crate) fn leaves_out(&mut self, ask: Option<AskId>, left_out: LeftOut) {
+        let is_first = *self.run.phase() == Phase::Waiting || self.plans.left_out.is_none();
+        let slot = if is_first { &mut self.plans.left_out } else { &mut self.plans.left_out_now };
+        *slot = Some((ask, left_out));
+    }
+
+    /// The planner that promised the figures, if a different one drives now.
+    pub fn promised_by_other(&self) -> Option<&str> {
+        let promised = self.plans.planner.as_deref()?;
+        (self.run.planner_id()? != promised).then_some(promised)
     }
 
     /// Whether the plan was made on the way, so that the promised figures are those of an earlier one.

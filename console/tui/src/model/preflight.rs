@@ -155,7 +155,14 @@ impl Model {
             }
             (Some(plan), None) if self.live.is_plan_of_the_way() => {
                 let outcome = if plan.complete { CheckOutcome::Passed } else { CheckOutcome::Warning };
-                let what = if plan.complete { "the whole task" } else { "only part of the task" };
+                let what = match self.live.left_out_by_plan() {
+                    Some(left_out) => {
+                        let scanned = percent_text(left_out.scanned(), 1);
+                        format!("with it, the run scans {scanned} % of the requested floor")
+                    }
+                    None if plan.complete => "the whole task".to_owned(),
+                    None => "only part of the task".to_owned(),
+                };
                 check("plan", outcome, format!("{:.1} m, {what}; made on the way", plan.length_m))
             }
             (Some(plan), None) if plan.complete => {

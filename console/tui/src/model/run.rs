@@ -11,9 +11,10 @@ use mission::{
 };
 use positioning::AccuracyMap;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use vehicle::port::LinkSeen;
 use world::coverage::regions::cells_within;
-use world::{PlateLayout, Point, Pose, Station, StationId, World};
+use world::{ObstacleId, PlateLayout, Point, Pose, Station, StationId, World};
 
 /// Time under way, seconds, before which the average pace does not allow an estimate of the remaining time.
 const SETTLED_S: f64 = 30.0;
@@ -48,6 +49,9 @@ pub struct Run {
     pub progress: Option<Progress>,
     /// The history of the scanned share of the reachable floor, per cent.
     pub scanned_history: History,
+    /// Where each found obstacle was found, and whether it has moved since.
+    #[serde(default)]
+    pub found_at: BTreeMap<ObstacleId, (Point, bool)>,
     /// The tether; `None` without a tether.
     #[serde(default)]
     pub tether: Option<Tether>,
@@ -194,6 +198,11 @@ impl Run {
     /// Whether the mission's task is to scan the floor.
     pub fn covers(&self) -> bool {
         self.about.as_ref().is_some_and(|about| matches!(about.mission.task, TaskConfig::Cover { .. }))
+    }
+
+    /// Whether every obstacle that was found moves.
+    pub fn finds_only_moving(&self) -> bool {
+        !self.found_at.is_empty() && self.found_at.values().all(|(_, moves)| *moves)
     }
 
     /// Whether the tether is torn.

@@ -132,6 +132,6 @@ fn ending(outlook: &Outlook) -> Option<String> {
     match outlook.outcome {
         Some(Outcome::Complete) => None,
         Some(outcome) => Some(format!("it ends {}: {}", outcome.word(), outlook.reason)),
-        None => Some(format!("it ends HELD: {}", outlook.reason)),
+        None => Some(format!("it ends held: {}", outlook.reason.trim_start_matches("held: "))),
     }
 }

@@ -128,28 +128,11 @@ impl Run {
     pub fn column_numbers(&self) -> Vec<usize> {
         let columns = self.survey.as_ref().map_or(&[][..], |survey| survey.columns.as_slice());
         let obstacles = self.about.as_ref().map_or(&[][..], |about| about.world.obstacles.as_slice());
-        let found: Vec<(usize, Point)> = obstacles
-            .iter()
-            .filter_map(|obstacle| {
-                let number = obstacle.name.strip_prefix("found ").filter(|_| !obstacle.known)?;
-                Some((number.parse().ok()?, obstacle.shape.center()))
-            })
-            .collect();
-        let mut next = found.iter().map(|(number, _)| *number).max().unwrap_or(0);
-        let mut taken = Vec::new();
-        columns
-            .iter()
-            .map(|column| {
-                let is_here = |at: &Point| column.shape().distance_m(*at) <= 0.0;
-                let mut numbers = found.iter().filter(|(_, at)| is_here(at)).map(|(number, _)| *number);
-                let number = numbers.find(|number| !taken.contains(number)).unwrap_or_else(|| {
-                    next += 1;
-                    next
-                });
-                taken.push(number);
-                number
-            })
-            .collect()
+        let found = obstacles.iter().filter(|obstacle| !obstacle.known);
+        exploration::column_numbers(
+            columns,
+            found.map(|obstacle| (obstacle.name.as_str(), obstacle.shape.center())),
+        )
     }
 
     /// Folds in what an event says about a survey.

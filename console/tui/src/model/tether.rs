@@ -38,6 +38,9 @@ pub struct Tether {
     /// Whether the cable is torn: it does not lead to the robot any more.
     #[serde(default)]
     pub is_broken: bool,
+    /// The length off the reel when the mission noticed that the cable is torn, metres.
+    #[serde(default)]
+    pub broke_out_m: Option<f64>,
     /// The cable from the anchor to the robot.
     pub line: Vec<Point>,
     /// Whether the current plan, or the plan last refused, is certified; `None` without such a plan.

@@ -54,12 +54,14 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
         RunMsg::Estimated(ask, estimate) => {
             let plan = model.live.run.planning.plan.as_ref().filter(|plan| plan.ask == ask);
             model.live.plans.lanes = plan.map_or(0, |plan| plan.lanes.len());
+            model.live.plans.planner = model.live.run.planner_id().map(ToOwned::to_owned);
             model.live.plans.estimate = Some((ask, *estimate));
         }
+        RunMsg::Promised(promise) => model.live.plans.promised_at_start(*promise),
         RunMsg::WayBack(way) => finish::found(model, way),
         RunMsg::ZoneCost(corners, cost) => zones::priced(model, &corners, cost),
         RunMsg::InDoubt(floor) => model.live.in_doubt = floor,
-        RunMsg::LeftOut(ask, left_out) => model.live.plans.left_out = Some((ask, *left_out)),
+        RunMsg::LeftOut(ask, left_out) => model.live.leaves_out(ask, *left_out),
         RunMsg::CompareAt(share, what) => {
             if let Some(ghost) = &mut model.live.plans.ghost {
                 ghost.at = Some((share, what));

@@ -3,8 +3,8 @@
 use crate::actions::ActionId;
 use crate::keys::KeyPress;
 use crate::model::{
-    Combination, Continued, Forecast, GhostPlan, Glimpse, Health, Measured, Preset, Run, RunId, RunResult,
-    Source, Speed, Times,
+    Combination, Continued, Forecast, GhostPlan, Glimpse, Health, Measured, Preset, Promise, Run, RunId,
+    RunResult, Source, Speed, Times,
     glimpse::RunKey,
     home::Found,
     replay::{Align, Reel, Side},
@@ -168,6 +168,8 @@ pub enum RunMsg {
     Checked(Vec<Check>),
     /// The estimate for a plan, and the ask that the plan answers.
     Estimated(Option<AskId>, Box<Estimate>),
+    /// The figures that the plan of the start promised, computed again from the journal of a run.
+    Promised(Box<Promise>),
     /// The way back of the held robot, or the reason why there is none, as a sentence.
     WayBack(Result<WayBack, String>),
     /// The cost of a no-go zone with these corners, or the reason why it would be refused, as a sentence.

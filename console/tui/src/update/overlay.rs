@@ -180,7 +180,7 @@ pub(super) fn choose(model: &mut Model, purpose: Purpose, planner: PlannerInfo) 
     }
     let choice = PlannerChoice { id: planner.id, parameters: Parameters::new() };
     match purpose {
-        Purpose::Drive => ask(model, Ask::Swap(choice)),
+        Purpose::Drive => setting::propose_planner(model, Ask::Swap(choice)),
         Purpose::Compare => compare(model, choice),
         Purpose::WhatIf => what_if::add(model, &choice),
         Purpose::Shadow => shadow::begin(model, choice),

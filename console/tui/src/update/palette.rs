@@ -89,7 +89,7 @@ fn ranked(model: &Model, palette: &Palette, typed: &str) -> Vec<&'static Action>
 fn weight(risk: Risk) -> u8 {
     match risk {
         Risk::Safe => 0,
-        Risk::Moves => 1,
+        Risk::Changes | Risk::Moves => 1,
         Risk::Destroys => 2,
     }
 }

@@ -35,6 +35,18 @@ pub(super) fn estimate(model: &mut Model, changed: PlannerChoice) -> Vec<Effect>
     vec![Effect::Compare(changed)]
 }
 
+/// Asks whether a different planner is to drive and, during a mission, requests a forecast with it: the operator must see
+/// what the change loses.
+pub(crate) fn propose_planner(model: &mut Model, question: Ask) -> Vec<Effect> {
+    let next = match &question {
+        Ask::Swap(choice) => Some(choice.clone()),
+        _ => model.live.run.shadow.as_ref().map(|shadow| shadow.choice.clone()),
+    };
+    let next = next.filter(|_| !model.live.waits());
+    let forecast = next.map_or_else(Vec::new, |next| what_if::estimate(model, next));
+    forecast.into_iter().chain(ask(model, question)).collect()
+}
+
 /// Sends the value, and returns to the list from which the change was made.
 pub(super) fn take(model: &mut Model, key: String, value: ParamValue, list: Option<usize>) -> Vec<Effect> {
     if let Some(selected) = list {
@@ -45,7 +57,12 @@ pub(super) fn take(model: &mut Model, key: String, value: ParamValue, list: Opti
 
 /// Whether a question or a list is open that shows the estimated effect of a change.
 pub(super) fn is_open(model: &Model) -> bool {
-    matches!(model.ui.overlay, Overlay::Confirm(Ask::Set { .. }) | Overlay::Preset { .. })
+    match &model.ui.overlay {
+        Overlay::Confirm(Ask::Set { .. }) | Overlay::Preset { .. } => true,
+        // Before the start, the new planner shows its plan itself.
+        Overlay::Confirm(Ask::Swap(_) | Ask::Promote) => !model.live.waits(),
+        _ => false,
+    }
 }
 
 /// Ends the estimate of a change that is not shown any more; `was_open` states whether it was shown before the message.

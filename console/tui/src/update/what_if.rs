@@ -2,7 +2,7 @@
 
 use super::message::Effect;
 use super::offer::refuse;
-use super::overlay::ask;
+use super::setting;
 use crate::model::ui::Ask;
 use crate::model::what_if::MOST;
 use crate::model::{Candidate, Forecast, Model, Overlay, WhatIf, preset};
@@ -41,6 +41,10 @@ pub(super) fn stop_estimate(model: &mut Model) -> Vec<Effect> {
     let is_held = matches!(model.live.run.phase(), Phase::Held(_));
     let Some(what_if) = &mut model.live.what_if else { return Vec::new() };
     let added = what_if.estimated.take();
+    // A change whose forecast was known before needed none of its own.
+    if added.is_none() && is_held {
+        return Vec::new();
+    }
     let has_room = what_if.candidates.len() <= MOST;
     what_if.candidates.retain(|candidate| {
         added.as_ref() != Some(&candidate.choice) || (has_room && candidate.made.is_some())
@@ -170,7 +174,7 @@ pub(super) fn choose(model: &mut Model) -> Vec<Effect> {
         model.say(Severity::Info, model.console.keys.spelled(&text));
         return vec![noted];
     }
-    std::iter::once(noted).chain(ask(model, Ask::Swap(choice))).collect()
+    std::iter::once(noted).chain(setting::propose_planner(model, Ask::Swap(choice))).collect()
 }
 
 /// Closes the comparison; finished forecasts are kept until the mission continues.

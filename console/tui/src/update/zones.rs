@@ -168,7 +168,8 @@ pub(crate) fn drawn_words(model: &Model) -> Option<String> {
     };
     let hull = hull_gap_m(model, &corners).map_or_else(String::new, |gap_m| {
         if gap_m <= 0.0 {
-            ", touches the hull".to_owned()
+            let has_area = draft.form == Form::Polygon || corners.len() >= 3;
+            if has_area { ", touches the hull" } else { "; the hull is at the corner" }.to_owned()
         } else {
             format!(", {} m from the hull", text::number(gap_m, 2))
         }

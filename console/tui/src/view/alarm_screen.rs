@@ -8,6 +8,7 @@ mod table;
 mod watched;
 
 pub(super) use actions::list as action_list;
+pub(super) use before::last_warnings;
 
 use super::charts::{self, Series};
 use super::look::{Look, fill};
@@ -310,7 +311,7 @@ fn draw_events(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
     let block = look.block(Role::Border, "Events of this alarm", &look.keys("<events> all events"));
     let inner = block.inner(area);
     let entries = alarm.events.iter().rev().filter_map(|number| look.run.log.get(*number));
-    let lines = entries.take(usize::from(inner.height));
-    let lines = lines.map(|entry| look.line(events::row(entry, usize::from(inner.width)))).collect();
+    let size = (usize::from(inner.width), usize::from(inner.height));
+    let lines = events::in_rows(entries, size).into_iter().map(|parts| look.line(parts)).collect();
     fill(frame, area, block, lines);
 }

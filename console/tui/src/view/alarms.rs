@@ -1,5 +1,6 @@
 //! The alarms pane of a large screen: one line per alarm, most severe first.
 
+use super::alarm_screen::last_warnings;
 use super::look::{Look, Parts, fill};
 use super::{events, text};
 use crate::guide;
@@ -21,16 +22,29 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         &look.keys("<acknowledge> acknowledge  <alarms> all"),
     );
     let inner = block.inner(area);
-    let mut lines: Vec<_> = alarms
-        .iter()
-        .flat_map(|alarm| rows(look, alarm, usize::from(inner.width)))
-        .take(usize::from(inner.height))
-        .map(|row| look.line(row))
-        .collect();
-    if lines.is_empty() {
-        lines.push(look.line([(Role::Dim, " No alarms.".into())]));
+    let (columns, height) = (usize::from(inner.width), usize::from(inner.height));
+    if alarms.is_empty() {
+        let mut lines = vec![look.line([(Role::Dim, " No alarms.".into())])];
+        let warnings = events::in_rows(last_warnings(look), (columns, height.saturating_sub(2)));
+        if !warnings.is_empty() {
+            lines.push(look.line([(Role::Dim, " The last warnings:".into())]));
+        }
+        lines.extend(warnings.into_iter().map(|parts| look.line(parts)));
+        return fill(frame, area, block, lines);
     }
-    fill(frame, area, block, lines);
+    let each: Vec<Vec<Parts>> = alarms.iter().map(|alarm| rows(look, alarm, columns)).collect();
+    let mut spare = height.saturating_sub(each.iter().map(Vec::len).sum());
+    let mut lines = Vec::new();
+    for (alarm, rows) in alarms.iter().zip(each) {
+        // Rows that the alarms do not need say what is wrong.
+        let words = text::wrap(&text::capitalized(&alarm.text), columns.saturating_sub(4));
+        let about = if words.len() <= spare { words } else { Vec::new() };
+        spare -= about.len();
+        lines.extend(rows);
+        lines.extend(about.into_iter().map(|words| vec![(Role::Dim, format!("   {words}"))]));
+    }
+    lines.truncate(height);
+    fill(frame, area, block, lines.into_iter().map(|row| look.line(row)).collect());
 }
 
 /// The rows of an alarm: state first, then the text beside it or, in a narrow pane, below it.

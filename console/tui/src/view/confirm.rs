@@ -9,10 +9,10 @@ use super::{coverage, setting, survey, text};
 use crate::guide;
 use crate::model::ui::{Ask, Shelving};
 use crate::model::zone_draft::Form;
-use crate::model::{LineEdit, Model, Offer, Overlay, Shadow, log::clock};
+use crate::model::{LineEdit, Model, Offer, Overlay, Shadow, Speed, log::clock};
 use crate::theme::Role;
 use crate::update::zones;
-use mission::{Hold, HoldReason, Phase, WayBack};
+use mission::{Hold, HoldReason, Phase, PlannerChoice, WayBack};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
@@ -145,7 +145,9 @@ fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
             let question = "Resume? The robot will move. <accept>: resume, <cancel>: cancel.".into();
             let in_zone = model.live.run.is_in_zone().then(|| IN_ZONE.to_owned());
             let torn = model.live.run.is_tether_broken().then(|| TETHER_BROKEN.to_owned());
-            let first = std::iter::once(question).chain(torn).chain(in_zone);
+            let speed = model.live.speed;
+            let fast = (speed != Speed::Times(1.0)).then(|| format!("Speed {}.", text::speed(speed)));
+            let first = std::iter::once(question).chain(fast).chain(torn).chain(in_zone);
             first.chain([moves(model)]).chain(continues(model)).collect()
         }
         Overlay::Confirm(Ask::FlyUncertified) => uncertified(model.live.run.phase()),
@@ -158,7 +160,8 @@ fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
                 }
                 _ => format!("Change to {next}? <accept>: change, <cancel>: cancel."),
             };
-            vec![question, "No motion yet.".into()]
+            let effect = effect(model, Some(choice), has_progress);
+            [question, "No motion yet.".into()].into_iter().chain(effect).collect()
         }
         Overlay::Finish { selected: 0 } => {
             let done = survey::sentence(model);
@@ -198,6 +201,9 @@ fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
                 },
                 shadow.map_or_else(String::new, |shadow| shadows_plan(model, shadow)),
             ]
+            .into_iter()
+            .chain(effect(model, shadow.map(|shadow| &shadow.choice), has_progress))
+            .collect()
         }
         Overlay::Confirm(Ask::TakePlan) => {
             let offer = model.live.run.planning.offer.as_ref();
@@ -223,6 +229,13 @@ fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
         _ => return None,
     };
     Some(clauses.iter().map(|clause| model.console.keys.spelled(clause)).collect())
+}
+
+/// The forecast effect of a change of planner during a mission, as sentences. Before the start, the change itself shows
+/// the plan.
+fn effect(model: &Model, choice: Option<&PlannerChoice>, has_progress: bool) -> Vec<String> {
+    let choice = choice.filter(|_| !model.live.waits());
+    choice.map_or_else(Vec::new, |choice| setting::effect(model, choice, has_progress))
 }
 
 /// The plan of the planner in shadow, as sentences: its length, and what the tether demands of it.

@@ -6,6 +6,7 @@ use crate::model::coverage::Raster;
 use crate::model::{Earlier, Live, Model, Pane, Run};
 use crate::theme::Role;
 use account::{Percent, Shares};
+use mission::TaskConfig;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -58,13 +59,17 @@ fn wide_lines(look: &Look, bases: &Bases, columns: usize) -> Vec<(u8, Line<'stat
         (1, look.line([(Role::Good, format!(" {}", bases.bar(columns.saturating_sub(2))))])),
         row(7, "unreachable", out_of_reach),
         row(5, "speed", pace(look.model, room)),
-        row(6, "overlap", format!("{overlap} % of scanned floor")),
         row(4, way_label(run, room), way(run)),
         row(2, "time left", left(look, true)),
     ];
     // A drive to a goal or along a path has no floor to scan.
     if run.covers() {
         lines.insert(2, row(3, to_do_label(run), shares(&first_to_do, &second_to_do)));
+    }
+    // A drive to a goal scans on its way at most by chance.
+    if !is_drive(run) {
+        let after_speed = lines.len() - 2;
+        lines.insert(after_speed, row(6, "overlap", format!("{overlap} % of scanned floor")));
     }
     lines.extend(channels(run, room).map(|strip| row(5, "channels", strip)));
     lines.extend(in_doubt(look.model).map(|words| {
@@ -223,6 +228,11 @@ fn word(model: &Model) -> &'static str {
     if model.live.run.covers() || model.live.is_rescan() { "scanned" } else { "passed over" }
 }
 
+/// Whether the task is only to drive to a goal.
+fn is_drive(run: &Run) -> bool {
+    run.about.as_ref().is_some_and(|about| matches!(about.mission.task, TaskConfig::Goto { .. }))
+}
+
 /// The label for unscanned floor: still to do, or missed once the mission has ended.
 fn to_do_label(run: &Run) -> &'static str {
     if run.has_ended() { "missed" } else { "to do" }
@@ -238,7 +248,7 @@ fn pace(model: &Model, room: usize) -> String {
     let pace = format!("{speed} m/s, {rate} m²/min");
     let scanned = text::number(scanned_m2, 0);
     let what = word(model);
-    text::wording([format!("{pace}, {scanned} m² {what}"), format!("{pace}, {scanned} m²"), pace], room)
+    text::wording([format!("{pace}, {scanned} m² {what}"), pace], room)
 }
 
 /// The label of the path that the task presets or, without one, of the planner's path; the two have different lengths.

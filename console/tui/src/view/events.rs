@@ -248,6 +248,36 @@ pub(super) fn row(entry: &Entry, columns: usize) -> Parts {
     counted_row(entry, entry.count, columns)
 }
 
+/// The fewest columns of a text that is wrapped.
+const LEAST_TEXT: usize = 16;
+
+/// Log lines as rows, in their order. Rows that the lines do not need show the rest of sentences that one row would cut, those
+/// of the first lines first.
+pub(super) fn in_rows<'a>(
+    entries: impl Iterator<Item = &'a Entry>,
+    (columns, rows): (usize, usize),
+) -> Vec<Parts> {
+    let entries: Vec<&Entry> = entries.take(rows).collect();
+    let mut spare = rows - entries.len();
+    let mut shown = Vec::new();
+    for entry in entries {
+        let first = row(entry, columns);
+        let indent: usize = first.iter().take(3).map(|(_, words)| text::width(words)).sum();
+        let rest = text::wrap(&entry.text, columns.saturating_sub(indent + 1));
+        let extra = rest.len().saturating_sub(1);
+        if extra == 0 || extra > spare || columns < indent + LEAST_TEXT {
+            shown.push(first);
+            continue;
+        }
+        spare -= extra;
+        let mut rest = rest.into_iter();
+        let text = (Role::Text, rest.next().unwrap_or_default());
+        shown.push(first.into_iter().take(3).chain([text]).collect());
+        shown.extend(rest.map(|words| vec![(Role::Text, format!("{}{words}", " ".repeat(indent)))]));
+    }
+    shown
+}
+
 fn counted_row(entry: &Entry, times: u32, columns: usize) -> Parts {
     let again = if times > 1 { format!(" (×{times})") } else { String::new() };
     let front = format!(" T+{} ", text::clock(entry.t_s));

@@ -223,7 +223,8 @@ fn shortened(sentence: &str, columns: usize) -> String {
 /// mission has come, if no other clause has to be dropped for this.
 pub(super) fn line(model: &Model, clauses: &[String], columns: usize) -> String {
     let short = fitting(clauses, columns);
-    let whereabouts = held::whereabouts(model).into_iter();
+    let state = short.first().map_or("", String::as_str);
+    let whereabouts = held::whereabouts(model, state).into_iter();
     let longer = whereabouts.filter_map(|whereabouts| {
         let mut clauses = short.clone();
         let first = clauses.first_mut()?;
@@ -301,7 +302,12 @@ fn running(model: &Model) -> Clauses {
         let figure = figure.map(|peak| format!("It reached {}, limit {}.", peak.now, peak.limit));
         [Some(format!("{name} (cleared). {acknowledge}").trim_end().to_owned()), figure]
     } else {
-        [(role == Role::Title).then(|| "No action required.".to_owned()), None]
+        let new = alarms.open().filter(|alarm| alarm.is_unacknowledged()).count();
+        let words = match new {
+            1.. if !model.live.is_look_only() => format!("{} to acknowledge.", text::counted(new, "alarm")),
+            _ => "No action required.".to_owned(),
+        };
+        [(role == Role::Title).then_some(words), None]
     };
     (role, doing.into_iter().chain(last.into_iter().flatten()).collect())
 }

@@ -62,10 +62,13 @@ fn rows_of(look: &Look, wide: bool, room: usize) -> Vec<(u8, &'static str, Value
         (4, if wide { "cross-track" } else { "off path" }, (Role::Text, cross_track(run, room))),
         (5, "plan", (Role::Text, plan(run))),
     ]);
-    if run.is_survey() {
-        // The pane about the survey shows its way.
-        rows.retain(|(_, label, _)| !matches!(*label, "plan" | "cross-track" | "off path"));
-    }
+    // Without a preset path, nothing can be off it; the pane about a survey shows its way.
+    let has_preset = run.about.as_ref().is_none_or(|about| about.preset_m.is_some());
+    rows.retain(|(_, label, _)| match *label {
+        "plan" => !run.is_survey(),
+        "cross-track" | "off path" => has_preset && !run.is_survey(),
+        _ => true,
+    });
     rows
 }
 
@@ -102,10 +105,6 @@ fn target(run: &Run, room: usize) -> String {
 }
 
 fn cross_track(run: &Run, room: usize) -> String {
-    let preset = run.about.as_ref().is_none_or(|about| about.preset_m.is_some());
-    if !preset {
-        return "- (no preset path)".into();
-    }
     let off_m = run.progress.as_ref().and_then(|progress| progress.cross_track_m);
     let off = off_m.map_or_else(|| "-".into(), |off_m| text::number(off_m, 2));
     text::wording([format!("{off} m from preset path"), format!("{off} m")], room)

@@ -138,11 +138,7 @@ fn error(look: &Look) -> (Role, String) {
         _ => Role::Text,
     };
     let error = error_m.map_or_else(|| "-".into(), |error_m| format!("±{}", text::number(error_m, 2)));
-    let lost = match (run.position.lost, is_doubtful) {
-        (true, _) => "LOST ",
-        (false, true) => "! ",
-        (false, false) => "",
-    };
+    let lost = if run.position.lost { "LOST " } else { "" };
     let (error, limit) = match error_m.map(|error_m| beside_limit(error_m, limit_m, 2)) {
         Some([beside, limit]) if limit_m.is_finite() && run.position.protection.is_none() => {
             (format!("±{beside}"), limit)
@@ -150,6 +146,7 @@ fn error(look: &Look) -> (Role, String) {
         _ => (error, text::number(limit_m, 2)),
     };
     let (role, words) = match run.position.protection {
+        _ if is_doubtful => (role, format!("{lost}{error} m, NOT RELIABLE")),
         None => (role, format!("{lost}{error} m (limit {limit})")),
         Some(Some(level_m)) => (role, format!("{lost}{error} m, protected {} m", text::number(level_m, 2))),
         Some(None) => (role.max(Role::Warn), format!("{lost}{error} m, NOT PROTECTED")),

@@ -96,6 +96,8 @@ fn placed(model: &Model, area: Rect, result: &RunResult) -> Vec<(Pane, Rect)> {
         1 if pane != Pane::Missed && are_figures_cut(model, area, result, needed.min(MISSED[1])) => {
             missed::rows_now(model, area.width).clamp(3, MISSED[1])
         }
+        // A narrow screen has no room to spare: the reasons have the rows of the list once it has the focus.
+        0 if pane != Pane::Missed => missed::rows_now(model, area.width).clamp(3, MISSED[0]),
         _ if pane == Pane::Missed => needed.min(area.height.saturating_sub(ABOVE_MISSED)).max(3),
         2 => beside_plates(model, area, result, needed.min(MISSED[2])),
         size => needed.min(MISSED[size]),

@@ -50,12 +50,12 @@ fn effect_of(effect: &Effect, is_plan: bool, required_m: Option<f64>) -> Vec<Str
             let share = share.map_or_else(String::new, |share| {
                 format!(" {} %", text::number((100.0 * share).floor().clamp(0.0, 99.0), 0))
             });
-            vec![format!("Computing the effect{share}... <accept> sets it without.")]
+            vec![format!("Computing the effect{share}... <accept> does not wait for it.")]
         }
         Effect::Unknown(why) => vec![format!("Effect not known: {why}.")],
         Effect::Known { now, then, remark } => {
             let clearance = clearance(now.as_ref(), then, required_m);
-            let mut first = remark.iter().cloned().chain([clearance]);
+            let mut first = remark.iter().cloned().chain(loss(now.as_ref(), then)).chain([clearance]);
             let most = format!("{basis}: {}.", first.next().unwrap_or_default());
             let rest = first.chain(figures(now.as_ref(), then));
             std::iter::once(most).chain(rest.map(|words| format!("{}.", text::capitalized(&words)))).collect()
@@ -85,6 +85,13 @@ fn clearance(now: Option<&Figures>, then: &Figures, required_m: Option<f64>) -> 
     format!("clearance {}{warning}", beside(now, then, &metres))
 }
 
+/// The floor that the change loses: what it scans, and what is scanned without it; `None` if it scans no less.
+fn loss(now: Option<&Figures>, then: &Figures) -> Option<String> {
+    let [now, then] = [now?.scanned?, then.scanned?].map(text::percent);
+    let is_less = now.parse::<f64>().ok()? > then.parse::<f64>().ok()?;
+    is_less.then(|| format!("scans LESS, {then} % of the reachable floor instead of {now} %"))
+}
+
 /// The other figures, most important first. The tether's are named only if the change affects them.
 fn figures(now: Option<&Figures>, then: &Figures) -> Vec<String> {
     let beside = |figure: &dyn Fn(&Figures) -> String| beside(now, then, figure);
@@ -99,7 +106,7 @@ fn figures(now: Option<&Figures>, then: &Figures) -> Vec<String> {
     };
     let time = beside(&|figures| clock(figures.time_s));
     let length = beside(&|figures| format!("{} m", text::number(figures.length_m, 1)));
-    let scanned = then.scanned.map(|_| {
+    let scanned = then.scanned.filter(|_| now.is_none_or(|now| loss(Some(now), then).is_none())).map(|_| {
         let share =
             |figures: &Figures| or_dash(figures.scanned.map(|share| format!("{} %", text::percent(share))));
         format!("scanned {}", beside(&share))

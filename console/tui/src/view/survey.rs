@@ -110,10 +110,9 @@ fn list(run: &Run, survey: &Survey, rows: usize, width: usize) -> Vec<String> {
     let all = all.into_iter().take(rows);
     let mut lines: Vec<String> = all.map(|(number, column)| row(number, column, width)).collect();
     let left_out = survey.columns.len() - lines.len();
-    if left_out > 0 && lines.pop().is_some() {
-        let more = if lines.is_empty() { "" } else { "and " };
-        let more_of = if lines.is_empty() { "columns" } else { "more" };
-        lines.push(format!(" {more}{} {more_of}, on the map", left_out + 1));
+    // The row above the list gives the number of columns; a list without a column would only repeat it.
+    if left_out > 0 && lines.pop().is_some() && !lines.is_empty() {
+        lines.push(format!(" and {} more, on the map", left_out + 1));
     }
     lines
 }

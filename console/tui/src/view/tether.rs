@@ -48,7 +48,7 @@ fn wide_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> 
     let reel = reel(look);
     if tether.is_broken {
         return vec![
-            row(0, "torn", (Role::Crit, format!("{out} m off the reel"))),
+            row(0, "torn", (Role::Crit, torn(tether, room))),
             row(1, "the rest", (Role::Text, "lies on the floor".into())),
         ];
     }
@@ -62,13 +62,14 @@ fn wide_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> 
         row(8, "contacts", (Role::Text, contacts(tether))),
         row(0, "return path", home(tether)),
     ];
-    lines.push((6, trend(look, tether, columns)));
+    // Of the two curves, that of a measured pull is the more important.
+    lines.push((7, trend(look, tether, columns)));
     lines.extend(pull(look, tether, ("", room)).map(|pull| row(3, "reel needs", pull)));
     match tether.measured {
         Some(measured) => {
             let (label, most_n) = felt_where(look);
             lines.push(row(3, label, felt(measured.pull_n, most_n)));
-            lines.push((7, pull_trend(tether, most_n, columns)));
+            lines.push((6, pull_trend(tether, most_n, columns)));
             lines.push(row(slack_rank(measured, 4), "slack", slack(measured)));
         }
         None => lines.push((9, vec![(Role::Dim, format!(" {:<12} no sensor", "pull, slack"))])),
@@ -107,13 +108,15 @@ fn narrow_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)
     let room = columns.saturating_sub(2);
     let (out, reel) = (metres(tether.length_m), reel(look));
     if tether.is_broken {
-        return vec![row(0, "", (Role::Crit, format!("torn, {out} m off the reel")))];
+        let words = format!("torn, {}", torn(tether, room.saturating_sub(6)));
+        return vec![row(0, "", (Role::Crit, words))];
     }
     let out = [format!("out {out} of {reel} m"), format!("out {out}/{reel} m")];
     let out = labelled(out_share(look, tether), out, room);
     let pull = pull(look, tether, ("reel needs ", room)).map(|pull| row(4, "", pull));
-    let felt =
-        tether.measured.map(|measured| row(slack_rank(measured, 2), "", pull_and_slack(look, measured)));
+    let felt = tether
+        .measured
+        .map(|measured| row(slack_rank(measured, 2), "", pull_and_slack(look, measured, room)));
     let is_wound = wrap_share(look, tether) > text::CLOSE || tether.is_snagged;
     let wrap_rank = if felt.is_none() || is_wound { 2 } else { 3 };
     [
@@ -126,6 +129,20 @@ fn narrow_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)
     .chain(felt)
     .chain([row(0, "return path ", home(tether))])
     .collect()
+}
+
+/// The length off the reel of a torn tether, now and when the break was noticed: a reel that works winds the end up.
+fn torn(tether: &Tether, room: usize) -> String {
+    let now = format!("{} m off the reel", metres(tether.length_m));
+    let noticed = tether.broke_out_m.map(metres).filter(|noticed| *noticed != metres(tether.length_m));
+    match noticed {
+        Some(noticed) => {
+            let words =
+                [format!("{now} now, {noticed} m when noticed"), format!("{now} (first {noticed} m)"), now];
+            text::wording(words, room)
+        }
+        None => now,
+    }
 }
 
 fn limits(look: &Look) -> Option<world::tether::Limits> {
@@ -241,14 +258,17 @@ fn felt(pull_n: f64, most_n: Option<f64>) -> (Role, String) {
 }
 
 /// The measured pull and the slack in one narrow row; near its limit, the slack comes first, with the limit.
-fn pull_and_slack(look: &Look, measured: MeasuredPull) -> (Role, String) {
-    let pull = text::number(measured.pull_n, 1);
+fn pull_and_slack(look: &Look, measured: MeasuredPull, room: usize) -> (Role, String) {
+    let (label, most_n) = felt_where(look);
+    let pull = format!("{label} {} N", text::number(measured.pull_n, 1));
     if slack_rank(measured, 1) == 0 {
         let (role, slack) = slack(measured);
-        return (role, format!("slack {slack}, {pull} N"));
+        let slack = format!("slack {slack}");
+        return (role, text::wording([format!("{slack}, {pull}"), slack], room));
     }
-    let role = felt(measured.pull_n, felt_where(look).1).0;
-    (role, format!("pull {pull} N, slack {} m", text::number(measured.slack_m, 2)))
+    let (role, beside) = felt(measured.pull_n, most_n);
+    let slack = format!("{pull}, slack {} m", text::number(measured.slack_m, 2));
+    (role, text::wording([slack, format!("{label} {beside}"), pull], room))
 }
 
 /// The rank of the slack among the rows of the pane: near its limit, it is more important than the wrap.

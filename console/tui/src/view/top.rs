@@ -2,7 +2,7 @@
 
 use super::look::{Look, Parts};
 use super::text;
-use crate::model::{Model, Recording, ui::Arrangement};
+use crate::model::{Model, Recording, alarms::State, ui::Arrangement};
 use crate::theme::Role;
 use mission::{Gait, Outcome, Phase, Severity};
 use ratatui::Frame;
@@ -192,7 +192,9 @@ pub(super) enum Counts {
 pub(super) fn alarms(model: &Model, counts: Counts) -> Parts {
     let alarms = &model.live.run.alarms;
     if alarms.open().next().is_none() {
-        return vec![(Role::Dim, "no alarm".into())];
+        let shelved = alarms.list().iter().filter(|alarm| matches!(alarm.state, State::Shelved(_))).count();
+        let words = if shelved > 0 { format!("{shelved} shelved") } else { "no alarm".into() };
+        return vec![(Role::Dim, words)];
     }
     let severities = [
         (Severity::Crit, Role::Crit, "crit"),

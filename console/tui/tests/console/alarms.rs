@@ -532,15 +532,15 @@ fn the_position_error_is_marked_while_the_ranges_contradict_each_other() {
     let mut screen = Screen::running();
     screen.type_text("3");
     for size in [(120, 36), (80, 24)] {
-        assert!(!shown(&screen, size).contains("! ±"));
+        assert!(!shown(&screen, size).contains(" m, NOT RELIABLE"));
     }
     hear(&mut screen, EventKind::RangesInconsistent { chi2: 250.0, degrees_of_freedom: 1 });
     for size in [(120, 36), (80, 24)] {
         screen.send(Msg::Resize { width: size.0, height: size.1 });
-        assert!(shown(&screen, size).contains("! ±"), "{size:?}\n{}", shown(&screen, size));
+        assert!(shown(&screen, size).contains(" m, NOT RELIABLE"), "{size:?}\n{}", shown(&screen, size));
     }
     hear(&mut screen, EventKind::RangesConsistent);
-    assert!(!shown(&screen, (80, 24)).contains("! ±"));
+    assert!(!shown(&screen, (80, 24)).contains(" m, NOT RELIABLE"));
 }
 
 #[test]

@@ -148,7 +148,8 @@ fn commands_take_values() {
     assert_eq!(run(&mut with_home(Screen::running()), "verify latest"), verify("20261122T1-demo"));
     assert_eq!(run(&mut with_home(Screen::running()), "verify 20261121T2"), verify("20261121T2-demo"));
     let mut screen = Screen::held();
-    assert_eq!(run(&mut screen, "planner apf"), []);
+    let both = vec![choice("rpf"), choice("apf")];
+    assert_eq!(run(&mut screen, "planner apf"), [Effect::Forecast(both)], "its effect is shown");
     assert_eq!(screen.model.ui.overlay, Overlay::Confirm(Ask::Swap(choice("apf"))), "it asks first");
     let mut screen = Screen::held();
     run(&mut screen, "theme light");

@@ -563,7 +563,7 @@ impl Screen {
         }));
         let refused = mission::RefusedPlugin {
             plugin: "my_plugin.so".into(),
-            reason: "built for planner ABI 3, this console uses 1: rebuild it".into(),
+            reason: "built for planner ABI 3, this console uses ABI 1; rebuild it".into(),
         };
         screen.send(Msg::Planners { found: planners(), refused: vec![refused] });
         let events = screen.mission.opening();

@@ -102,3 +102,29 @@ fn a_drive_back_is_listed_as_such_and_not_as_resumed() {
     let page = page(&screen.model);
     assert!(page.contains("drive back") && !page.contains("resumed"), "{page}");
 }
+
+#[test]
+fn the_page_tells_how_the_tether_lies_and_its_next_steps_are_steps() {
+    let mut screen = Screen::tethered();
+    let events = vec![
+        screen.mission.cable(),
+        screen.mission.held(mission::HoldReason::Stuck { message: "no progress".into() }),
+    ];
+    screen.hear(RunMsg::Events(events));
+    let text = page(&screen.model);
+    let section =
+        |title: &str| text.split("\n## ").find(|part| part.starts_with(title)).unwrap_or_default().to_owned();
+    let tether = section("Tether");
+    assert!(tether.contains("- Out: ") && tether.contains("left on the reel"), "{text}");
+    assert!(tether.contains("- Wrap: ") && tether.contains("- Way back along the tether: "), "{text}");
+    let next = section("Next steps");
+    let steps = next.lines().filter(|line| line.starts_with("- "));
+    assert!(steps.clone().count() > 0 && steps.clone().all(|line| line.contains('`')), "{next}");
+    assert!(section("State").contains("No progress"), "{text}");
+    let torn =
+        mission::event::TetherAlarm::Broken { paid_out_m: 1.6, needed_m: 5.2, by_encoder_alone: false };
+    let torn = screen.mission.now(EventKind::TetherAlarmRaised { alarm: torn, reached: true });
+    screen.hear(RunMsg::Events(vec![torn]));
+    assert!(page(&screen.model).contains("- TORN: "), "{}", page(&screen.model));
+    assert!(!page(&held().model).contains("## Tether"), "a robot without a tether has no section about it");
+}

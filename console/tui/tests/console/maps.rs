@@ -488,3 +488,91 @@ fn welded() -> Screen {
 fn floor_that_the_tool_cannot_test_is_on_the_map_in_the_legend_and_in_the_shares() {
     store("welds", &mut welded());
 }
+
+#[test]
+fn no_warning_of_the_pre_flight_check_is_hidden_behind_another() {
+    let mut screen = rescan();
+    let check = |what: &str, found: &str| mission::Check {
+        what: what.into(),
+        outcome: CheckOutcome::Warning,
+        found: found.into(),
+    };
+    let long = "leaves out 28 areas of the requested floor along the shell, because no lane runs there; the largest is 1.3 m²";
+    let checks =
+        [check("floor", long), check("robot", long), check("disk", long), check("clock", "is 2 s late")];
+    screen.hear(RunMsg::Checked(checks.into()));
+    for (width, height) in [(120, 36), (80, 24), (60, 16)] {
+        screen.send(Msg::Resize { width, height });
+        let shown = text(&drawn(&screen.model, PLAIN, (width, height)));
+        let n_warn =
+            screen.model.checks().iter().filter(|check| check.outcome == CheckOutcome::Warning).count();
+        let n = shown.matches("│ WARN ").count();
+        // A small terminal shows the pane only after Tab.
+        assert!(n == 0 || n == n_warn || shown.contains(&format!("and {} more", n_warn - n)), "{n}\n{shown}");
+        assert!(n > 0 || width < 120, "{shown}");
+    }
+}
+
+/// The words in the column of panes beside the map.
+fn beside_map(screen: &Screen, size: (u16, u16)) -> String {
+    let shown = text(&drawn(&screen.model, PLAIN, size));
+    let right = |line: &str| line.rsplit_once("││").map(|(_, right)| right.trim_end_matches('│').to_owned());
+    let words: Vec<String> = shown.lines().filter_map(right).collect();
+    words.join(" ").split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn a_plan_made_on_the_way_shows_what_it_leaves_out_itself() {
+    let mut screen = planned();
+    let started = screen.mission.start();
+    screen.hear(RunMsg::Events(started));
+    let ask = Some(AskId { worker: WorkerId(1), n: 3 });
+    let planned = screen.mission.now(screen.mission.planned(ask));
+    screen.hear(RunMsg::Events(vec![planned]));
+    screen.model.live.plans.planner = Some("tether-safe".into());
+    let flat = |screen: &Screen| beside_map(screen, (120, 36));
+    let before = flat(&screen);
+    assert!(before.contains("The plan at the start scans 98.2 % of the requested floor"), "{before}");
+    let mut now = left_out();
+    now.areas.truncate(1);
+    now.areas[0].area_m2 = 17.37;
+    now.areas[0].reason = account::MissReason::NoLaneBeside;
+    screen.hear(RunMsg::LeftOut(ask, Box::new(now)));
+    let after = flat(&screen);
+    assert!(
+        after.contains("With this plan, the run scans 94.0 % of the requested floor (promised 98.2 %)"),
+        "{after}"
+    );
+    assert!(after.contains("no lane"), "{after}");
+    let whole = text(&drawn(&screen.model, PLAIN, (120, 36)));
+    assert!(
+        whole.contains("Left out  6.0 %, 17.40 m², 1 area") && whole.contains("Promised by tether-safe"),
+        "{whole}"
+    );
+    let plan = screen.model.checks().into_iter().find(|check| check.what == "plan").unwrap();
+    assert!(plan.found.contains("with it, the run scans 94.0 % of the requested floor"), "{}", plan.found);
+}
+
+#[test]
+fn the_reason_of_the_selected_area_is_shown_at_every_size() {
+    let mut screen = planned();
+    let ask = Some(AskId { worker: WorkerId(0), n: 2 });
+    let mut many = left_out();
+    let area = account::Area { reason: account::MissReason::NoLaneBeside, ..many.areas[0].clone() };
+    many.areas = vec![area; 28];
+    screen.hear(RunMsg::LeftOut(ask, Box::new(many)));
+    for (width, height) in SIZES {
+        screen.send(Msg::Resize { width, height });
+        screen.model.ui.pane = Pane::LeftOut;
+        let shown = text(&drawn(&screen.model, PLAIN, (width, height)));
+        let flat = if width < 80 {
+            shown.replace('│', " ").split_whitespace().collect::<Vec<_>>().join(" ")
+        } else {
+            beside_map(&screen, (width, height))
+        };
+        assert!(
+            flat.to_lowercase().contains("no lane of this planner runs along"),
+            "{width}x{height}\n{shown}"
+        );
+    }
+}

@@ -379,7 +379,27 @@ fn a_broken_tether_is_named_by_pane_and_alarm() {
         screen.type_text("4");
         let shown = text(&drawn(&screen.model, RICH, size));
         assert!(shown.contains("tether BROKEN") && shown.contains("CRIT"), "{size:?}\n{shown}");
+        assert!(shown.contains("Drive back beside the tether"), "{size:?}\n{shown}");
     }
+}
+
+#[test]
+fn a_plan_is_not_certified_and_has_no_figures_of_a_tether_that_is_torn() {
+    let mut screen = Screen::tethered();
+    let alarm = TetherAlarm::Broken { paid_out_m: 1.6, needed_m: 5.2, by_encoder_alone: false };
+    let certified = screen.mission.certified(&[]);
+    let alarmed = screen.mission.now(EventKind::TetherAlarmRaised { alarm, reached: true });
+    let held = screen.mission.held_until(HoldReason::Operator, Resumes::Never);
+    screen.hear(RunMsg::Events(vec![screen.mission.cable(), certified, alarmed, held]));
+    screen.send(Msg::Resize { width: 120, height: 36 });
+    screen.type_text("2");
+    let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+    assert!(shown.contains("tether TORN") && !shown.contains("tether certified"), "{shown}");
+    assert!(shown.lines().any(|line| line.contains("wrap") && line.contains("torn")), "{shown}");
+    assert!(shown.contains("HELD by operator; tether broken; robot at "), "{shown}");
+    screen.type_text("3");
+    let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+    assert!(shown.contains("torn        12.6 m off the reel (first 1.6 m)"), "{shown}");
 }
 
 #[test]

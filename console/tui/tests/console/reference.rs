@@ -10,8 +10,9 @@ const HEAD: &str = "\
 <!-- Made from the rows in console/tui/src/actions/rows/. INSTA_UPDATE=always cargo test --release -p tui renews it. -->
 
 The table gives the keys of the preset `default`; `keys.toml` changes them (see the operator guide). A *safe* command cannot make
-the robot move. A command that *moves* the robot, or *ends* the mission, asks first. Type a command after `:`, and its values after
-its name. Put a value with spaces in double quotes. Tab completes names and values, and the up key recalls earlier lines.
+the robot move. A command that *moves* the robot, or *ends* the mission, asks first. One that *asks* changes how the robot will move, but
+does not make it move. Type a command after `:`, and its values after its name. Put a value with spaces in double quotes. Tab
+completes names and values, and the up key recalls earlier lines.
 
 ## Commands
 

@@ -212,8 +212,10 @@ fn another_planner_drives_only_when_held_and_agreed() {
         Overlay::Planners { purpose: Purpose::Drive, selected: 1, is_unfolded: false },
         "the active one is selected"
     );
-    assert_eq!(screen.press([Key::Down, Key::Enter]), []);
-    assert_eq!(screen.press([Key::Enter]), [order(Order::ChoosePlanner(choice("spiral-tangent")))]);
+    let both = vec![choice("rpf"), choice("spiral-tangent")];
+    assert_eq!(screen.press([Key::Down, Key::Enter]), [Effect::Forecast(both)], "its effect is shown");
+    let answered = [order(Order::ChoosePlanner(choice("spiral-tangent"))), Effect::StopForecasting];
+    assert_eq!(screen.press([Key::Enter]), answered);
 }
 
 #[test]

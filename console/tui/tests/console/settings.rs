@@ -113,7 +113,7 @@ fn under_way_a_forecast_with_the_value_is_shown_first() {
         let asked = type_value(&mut screen, "1.5");
         assert_eq!(asked, [Effect::Forecast(vec![now.clone(), with.clone()])]);
         screen.hear(RunMsg::ForecastAt(with.clone(), 0.345));
-        assert!(shown(&screen).contains("Computing the effect 34 %... Enter sets it without."));
+        assert!(shown(&screen).contains("Computing the effect 34 %... Enter does not wait for it."));
         screen.hear(forecast(&now, 80.0, 600.0));
         screen.hear(forecast(&with, 90.0, 500.0));
         let effect = "Time 00:08:20 (now 00:10:00), path 90.0 m (now 80.0 m).";
@@ -261,4 +261,39 @@ fn a_change_by_a_command_is_asked_for_and_leaves_no_list() {
     assert!(matches!(screen.model.ui.overlay, Overlay::Confirm(Ask::Set { list: None, .. })));
     assert_eq!(screen.press(ENTER), [order(1.5), Effect::StopForecasting]);
     assert_eq!(screen.model.ui.overlay, Overlay::None);
+}
+
+#[test]
+fn the_question_about_another_planner_names_the_floor_that_the_change_loses() {
+    let mut screen = Screen::held();
+    if let Some(about) = &mut screen.model.live.run.about {
+        about.mission.task = mission::TaskConfig::Cover {
+            anchor: world::Point::origin(),
+            regions: Vec::new(),
+            tolerance_m: 0.2,
+        };
+    }
+    screen.model.console.planners.iter_mut().for_each(|planner| planner.covers = true);
+    let now = screen.model.live.run.planning.choice.clone().expect("a planner");
+    let next = crate::fixture::choice("spiral-tangent");
+    screen.type_text(":planner spiral-tangent");
+    assert_eq!(screen.press(ENTER), [Effect::Forecast(vec![now.clone(), next.clone()])]);
+    assert!(
+        shown(&screen).contains("Change to spiral-tangent? Enter: change, Esc: cancel. No motion yet."),
+        "{}",
+        shown(&screen)
+    );
+    let with = |choice: &PlannerChoice, reachable: f64| {
+        let RunMsg::Forecast(choice, Ok(mut made)) = forecast(choice, 80.0, 600.0) else {
+            panic!("a forecast")
+        };
+        made.outlook.reachable = reachable;
+        RunMsg::Forecast(choice, Ok(made))
+    };
+    screen.hear(with(&now, 0.998));
+    screen.hear(with(&next, 0.94));
+    let loss = "Forecast from here: scans LESS, 94.0 % of the reachable floor instead of 99.8 %.";
+    assert!(shown(&screen).contains(loss), "{}", shown(&screen));
+    let effects = screen.press([Key::Esc]);
+    assert!(effects.iter().all(|effect| !matches!(effect, Effect::Order(_))), "{effects:?}");
 }

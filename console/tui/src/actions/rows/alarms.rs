@@ -24,7 +24,7 @@ pub(super) const ROWS: &[Action] = &[
         .when(zones::can),
     action(ActionId::Draw, "draw-zone", "Draw a no-go zone from the cursor", &[Key::Char('d')], &[Context::Cursor]).label("no-go").reaches(Reach::Mission)
         .when(zones::can_draw).does(zones::draw),
-    action(ActionId::DrawnForm, "drawn-form", "Box, circle or polygon", &[Key::Char('s')], &[Context::Drawing]).label("form").looks(zones::reshape),
+    action(ActionId::DrawnForm, "drawn-form", "Box, circle or polygon", &[Key::Char('s')], &[Context::Drawing]).label("shape").looks(zones::reshape),
     action(ActionId::DrawnUndo, "drawn-undo", "Remove the last corner", &[Key::Backspace], &[Context::Drawing]).label("undo").when(zones::can_undo).looks(zones::undo),
     action(ActionId::DrawnClose, "drawn-close", "Close the polygon", &[Key::Char('c')], &[Context::Drawing]).label("close").when(zones::can_close).does(zones::close),
     action(ActionId::Exclude, "exclude", "Exclude a station from the position fix", &[], &[Context::Screen]).args(&[must("station", Kind::Station)]).reaches(Reach::Mission)

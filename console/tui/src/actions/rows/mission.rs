@@ -10,6 +10,7 @@ use crate::model::ui::{Ask, Purpose};
 use crate::update::offer::{self, accepted, demand};
 use crate::update::overlay::ask;
 use crate::update::send::send;
+use crate::update::setting::propose_planner;
 use crate::update::{Effect, act, finish, overlay, preflight, preset, shadow, what_if};
 use mission::Order;
 
@@ -34,11 +35,11 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::SetSpeed, "speed", "Set the speed of the simulation", &[], &[Context::Screen]).args(&[must("factor", Kind::Speed)]).also(&["rate", "pace"]).reaches(Reach::Pace).when(offer::simulating),
     action(ActionId::Abort, "end", "HOLD, then end or drive back (asks)", &[Key::Char('X')], &[Context::Screen]).label("end").risk(Risk::Destroys).also(&["abort", "finish"])
         .when(offer::abort).does(finish::begin),
-    action(ActionId::ChoosePlanner, "planner", "Change the planner (not while moving)", &[Key::Char('P')], &[On(Screen::Plan), On(Screen::Mission)]).label("planner").risk(Risk::Moves).args(&[may("planner", Kind::Planner)])
+    action(ActionId::ChoosePlanner, "planner", "Change the planner (not while moving)", &[Key::Char('P')], &[On(Screen::Plan), On(Screen::Mission)]).label("planner").risk(Risk::Changes).args(&[may("planner", Kind::Planner)])
         .when(offer::swap).does(|m| act::choose(m, Purpose::Drive)),
     action(ActionId::Shadow, "shadow", "Run a planner in shadow", &[], &[Context::Screen]).args(&[may("planner", Kind::Planner)]).reaches(Reach::Mission)
         .when(shadow::can_begin).does(|m| act::choose(m, Purpose::Shadow)),
-    action(ActionId::Promote, "promote", "Promote the planner in shadow", &[], &[Context::Screen]).risk(Risk::Moves).when(|m| accepted(m, &Order::Promote)).does(|m| ask(m, Ask::Promote)),
+    action(ActionId::Promote, "promote", "Promote the planner in shadow", &[], &[Context::Screen]).risk(Risk::Moves).when(|m| accepted(m, &Order::Promote)).does(|m| propose_planner(m, Ask::Promote)),
     action(ActionId::DropShadow, "shadow-off", "Stop the planner in shadow", &[], &[Context::Screen]).reaches(Reach::Mission).when(|m| accepted(m, &Order::DropShadow)).does(|m| send(m, Order::DropShadow)),
     action(ActionId::TakePlan, "take-plan", "Take the better plan on offer", &[Key::Char('T')], &[On(Screen::Mission)]).label("take plan").risk(Risk::Moves)
         .when(|m| accepted(m, &Order::TakePlan)).does(|m| ask(m, Ask::TakePlan)),

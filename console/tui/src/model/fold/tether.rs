@@ -34,8 +34,9 @@ impl Run {
                 if matches!(alarm, TetherAlarm::Snag { .. }) {
                     self.tether.get_or_insert_default().is_snagged = true;
                 }
-                if matches!(alarm, TetherAlarm::Broken { .. }) {
-                    self.tether.get_or_insert_default().is_broken = true;
+                if let TetherAlarm::Broken { paid_out_m, .. } = alarm {
+                    let tether = self.tether.get_or_insert_default();
+                    (tether.is_broken, tether.broke_out_m) = (true, Some(*paid_out_m));
                 }
                 if let (TetherAlarm::Reel { out_m, .. }, false) = (alarm, reached) {
                     self.tether.get_or_insert_default().is_near_end = true;

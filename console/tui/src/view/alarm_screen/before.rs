@@ -24,7 +24,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
 }
 
 /// The last log lines of WATCH and above, newest first.
-fn last_warnings<'a>(look: &Look<'a>) -> impl Iterator<Item = &'a Entry> {
+pub(in crate::view) fn last_warnings<'a>(look: &Look<'a>) -> impl Iterator<Item = &'a Entry> {
     let log = &look.run.log;
     let numbers = (log.oldest()..log.end()).rev().take(LOOKED_AT);
     numbers.filter_map(|number| log.get(number)).filter(|entry| entry.severity >= Severity::Watch)
@@ -49,9 +49,9 @@ fn list<'a>(
 ) {
     let block = look.block(Role::Border, title, &look.keys("<events> all events"));
     let inner = block.inner(area);
-    let columns = usize::from(inner.width);
+    let size = (usize::from(inner.width), usize::from(inner.height));
     let mut lines: Vec<_> =
-        entries.take(usize::from(inner.height)).map(|entry| look.line(events::row(entry, columns))).collect();
+        events::in_rows(entries, size).into_iter().map(|parts| look.line(parts)).collect();
     if lines.is_empty() {
         lines.push(look.line([(Role::Dim, " None.".to_owned())]));
     }

@@ -216,7 +216,7 @@ fn rules(keys: &Keymap, columns: usize) -> Vec<Row> {
     let few = if columns < 60 { 1 } else { 4 };
     [
         lists.as_str(),
-        "HOLD never asks first; commands marked MOVES or ENDS do.",
+        "HOLD never asks first; commands marked ASKS, MOVES or ENDS do.",
         "<hold>: HOLD; once text is typed, <interrupt>: HOLD.",
         "Alarms: unack: not acknowledged.",
     ]

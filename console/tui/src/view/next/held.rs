@@ -260,25 +260,30 @@ fn message(by: &HoldReason) -> Option<String> {
     }
 }
 
-/// Where a held robot is and how far its mission has come, from the longest wording to the shortest.
-pub(super) fn whereabouts(model: &Model) -> Vec<String> {
+/// Where a held robot is and how far its mission has come, from the longest wording to the shortest; they follow the
+/// clause of the state.
+pub(super) fn whereabouts(model: &Model, state: &str) -> Vec<String> {
     let run = &model.live.run;
     let Phase::Held(hold) = run.phase() else { return Vec::new() };
     if model.live.asked.is_some() || model.live.is_cut_off {
         return Vec::new();
     }
     let Some(pose) = run.position.pose else { return Vec::new() };
-    // Only some reasons happen at the place of the robot.
-    let is_here = matches!(
-        hold.by,
-        HoldReason::Operator | HoldReason::Stepped | HoldReason::Stuck { .. } | HoldReason::Guard { .. }
-    );
+    // Only some reasons happen at the place of the robot. Behind a second clause, the place would seem to be that of the
+    // clause.
+    let is_here = !state.contains(';')
+        && matches!(
+            hold.by,
+            HoldReason::Operator | HoldReason::Stepped | HoldReason::Stuck { .. } | HoldReason::Guard { .. }
+        );
     let at = format!("{} {}", if is_here { " at" } else { "; robot at" }, text::place(pose.position));
     let done =
         run.progress.as_ref().map(|progress| format!(", {} % done", text::number(100.0 * progress.done, 0)));
     match done {
         // The place of a tether alarm matters more than the progress.
-        Some(done) if matches!(hold.by, HoldReason::Tether { .. }) => vec![format!("{at}{done}"), at],
+        Some(done) if matches!(hold.by, HoldReason::Tether { .. }) || run.is_tether_broken() => {
+            vec![format!("{at}{done}"), at]
+        }
         Some(done) => vec![format!("{at}{done}"), done],
         None => vec![at],
     }

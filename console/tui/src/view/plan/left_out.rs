@@ -12,6 +12,8 @@ use ratatui::text::Line;
 
 /// Width of an area, columns.
 const AREA: usize = 8;
+/// The most lines of the reason below the rows.
+const MOST_ABOUT: usize = 3;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let left_out = look.model.live.left_out();
@@ -42,19 +44,37 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     }
     let is_focused = look.model.ui.pane == Pane::LeftOut;
     let selected = is_focused.then(|| look.model.ui.left_out.min(n_areas.saturating_sub(1)));
-    let about = selected.and_then(|index| left_out.areas.get(index)).map_or_else(Vec::new, |area| {
-        let [whole, ..] = reason(area.reason, &area.causes);
-        text::wrap(&format!("{}.", text::capitalized(&whole)), size.0.saturating_sub(2))
-    });
-    let spare = size.1.saturating_sub(rows.len() + 1);
-    let about = if about.len() <= spare { about } else { Vec::new() };
-    table::place(look, inner, Rows::LeftOut, table::window(selected.unwrap_or(0), n_areas, size.1));
-    let mut lines = table::rows(look, rows, selected, size);
+    let about = about(left_out, selected, place, size);
+    // The reason of the selected area takes the place of rows, of which one must stay. While no area is selected, it only
+    // takes spare rows.
+    let fits = selected.is_some() || rows.len() + about.len() <= size.1;
+    let about = if fits { about } else { Vec::new() };
+    let height = size.1.saturating_sub(about.len()).max(1);
+    let spare = size.1.saturating_sub(rows.len().min(height) + about.len());
+    table::place(look, inner, Rows::LeftOut, table::window(selected.unwrap_or(0), n_areas, height));
+    let mut lines = table::rows(look, rows, selected, (size.0, height));
     if !about.is_empty() {
-        lines.push(Line::default());
+        lines.extend((spare > 0).then(Line::default));
         lines.extend(about.into_iter().map(|line| look.line([(Role::Dim, format!(" {line}"))])));
     }
     fill(frame, area, block, lines);
+}
+
+/// The reason of the selected area or, if none is selected, of the largest one, in lines below the rows; empty if the row
+/// of the area shows the whole reason.
+fn about(left_out: &LeftOut, selected: Option<usize>, place: usize, size: (usize, usize)) -> Vec<String> {
+    let Some(area) = left_out.areas.get(selected.unwrap_or(0)) else { return Vec::new() };
+    let [whole, ..] = reason(area.reason, &area.causes);
+    let is_cut = AREA + 3 + place + text::width(&whole) > size.0;
+    if !is_cut {
+        return Vec::new();
+    }
+    let words = match selected {
+        Some(_) => text::capitalized(&whole),
+        None => format!("The largest: {whole}"),
+    };
+    let most = size.1.saturating_sub(1).min(MOST_ABOUT);
+    text::first_lines(text::wrap(&format!("{words}."), size.0.saturating_sub(2)), most, size.0)
 }
 
 fn title(left_out: Option<&LeftOut>, columns: usize) -> String {
@@ -100,12 +120,23 @@ fn reason(reason: MissReason, causes: &[Cause<MissReason>]) -> [String; 3] {
         MissReason::Clearance => {
             ["too little room for hull and clearance", "no room for hull and clearance", "no room for hull"]
         }
+        MissReason::NoLaneBeside => return along(measure),
         MissReason::Wrap => ["a lane here would wind the tether", "would wind the tether", "tether"],
         MissReason::BeyondReel => ["beyond the reach of the tether", "beyond the tether", "beyond tether"],
         MissReason::Narrow => ["outside the outermost lane", "outside the outermost lane", "outer lane"],
         reason => [reason.plainly(), reason.briefly(), reason.briefly()],
     };
     words.map(str::to_owned)
+}
+
+/// Why floor beside a solid object is left out although the robot has room there.
+fn along(measure: Option<&Measure>) -> [String; 3] {
+    let near = measure.and_then(|measure| measure.near.as_deref()).unwrap_or("the solid object");
+    [
+        format!("no lane of this planner runs along {near} here"),
+        format!("no lane along {near}"),
+        "no lane".into(),
+    ]
 }
 
 /// Why floor between or beside the lanes is left out: too narrow for a lane of its own, or the planner puts no lane

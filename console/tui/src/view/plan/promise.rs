@@ -2,7 +2,7 @@
 //! or, during a mission, the current figures.
 
 use super::along;
-use crate::model::{Pane, Run};
+use crate::model::{Pane, Run, Tether};
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
 use crate::view::text;
@@ -25,8 +25,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let columns = usize::from(look.pane(Pane::Promise, "", "").inner(area).width);
     let widths = Widths::new(columns, second.as_ref());
     let note = if widths.limit > 0 { "limit" } else { "" };
-    let title = if look.run.is_survey() { "Limits" } else { "Promised figures" };
-    let block = look.pane(Pane::Promise, title, note);
+    let title = title(look, columns.saturating_sub(note.len() + 10));
+    let block = look.pane(Pane::Promise, &title, note);
     let Some(mission) = look.run.about.as_ref().map(|about| &about.mission) else {
         return fill(frame, area, block, Vec::new());
     };
@@ -76,6 +76,21 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         .areas(block.inner(area));
     fill(frame, area, block, rows.into_iter().map(|parts| look.line(parts)).collect());
     along::draw(look, frame, below);
+}
+
+/// The title; it names the planner that promised the figures if a different one drives now.
+fn title(look: &Look, columns: usize) -> String {
+    if look.run.is_survey() {
+        return "Limits".into();
+    }
+    let brief = "Promised figures".to_owned();
+    match look.model.live.promised_by_other() {
+        Some(planner) => {
+            let by = format!("{brief} (at the start, by {planner})");
+            text::wording([by, format!("Promised by {planner}"), brief], columns)
+        }
+        None => brief,
+    }
 }
 
 /// What a survey has instead of promised figures: the limits, with the figures as they are now.
@@ -337,7 +352,7 @@ const FIGURES: [Figure; 11] = [
     Figure {
         promised: |e, _| Some(Found::worst(e.tether.as_ref()?.length_max)),
         limit: |m| Some(m.tether.as_ref()?.limits.reel_length_m),
-        now: |run| Some(alike(format!("{} m", text::number(run.tether.as_ref()?.length_m, 1)))),
+        now: |run| of_tether(run, |tether| Some(format!("{} m", text::number(tether.length_m, 1)))),
         ..figure("tether", "t", " m", 1)
     },
     Figure {
@@ -349,7 +364,7 @@ const FIGURES: [Figure; 11] = [
             Some(Found { note: on, at, ..Found::of(tether.wrap_max.value.to_degrees()) })
         },
         limit: |m| Some(m.tether.as_ref()?.limits.wrap_max_rad.to_degrees()),
-        now: |run| Some(alike(format!("{}°", text::number(run.tether.as_ref()?.largest_deg(), 0)))),
+        now: |run| of_tether(run, |tether| Some(format!("{}°", text::number(tether.largest_deg(), 0)))),
         ..figure("wrap", "w", "°", 0)
     },
     Figure {
@@ -362,8 +377,8 @@ const FIGURES: [Figure; 11] = [
         },
         limit: |m| Some(m.tether.as_ref()?.reel?.pull_n),
         warns: |m| Some(m.tether.as_ref()?.reel?.preferred_n()),
-        now: |run| Some(alike(format!("{} N", text::number(run.tether.as_ref()?.pull_n?, 1)))),
-        ..figure("pull", "p", " N", 1)
+        now: |run| of_tether(run, |tether| Some(format!("{} N", text::number(tether.pull_n?, 1)))),
+        ..figure("reel needs", "p", " N", 1)
     },
     Figure {
         brief: "AE",
@@ -393,6 +408,12 @@ const FIGURES: [Figure; 11] = [
 /// A value as the amount that is left, in a longer and a shorter wording; the head of a narrow column says `left`, too.
 fn left(value: String) -> [String; 2] {
     [format!("{value} left"), value]
+}
+
+/// A figure of the tether; a torn tether has none.
+fn of_tether(run: &Run, figure: impl FnOnce(&Tether) -> Option<String>) -> Option<[String; 2]> {
+    let tether = run.tether.as_ref()?;
+    if tether.is_broken { Some(alike("torn".into())) } else { figure(tether).map(alike) }
 }
 
 fn alike(value: String) -> [String; 2] {

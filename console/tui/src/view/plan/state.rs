@@ -133,13 +133,21 @@ fn in_short(look: &Look) -> Option<String> {
     look.run.planning.plan.as_ref().filter(|_| look.model.live.busy.is_none())?;
     let left_out = look.model.live.left_out()?;
     let is_certified = look.run.tether.as_ref().is_some_and(|tether| tether.certified == Some(true));
-    let certified = if is_certified { ", certified" } else { "" };
+    let certified = match is_certified {
+        _ if look.run.is_tether_broken() => ", tether TORN",
+        true => ", certified",
+        false => "",
+    };
     let areas = match left_out.areas.len() {
         0 => String::new(),
         n => format!(", {} left out", text::counted(n, "area")),
     };
     let scanned = text::percent(left_out.scanned());
-    let of = if look.model.live.is_plan_of_the_way() { "at the start " } else { "" };
+    let of = match () {
+        () if !look.model.live.is_plan_of_the_way() => "",
+        () if look.model.live.left_out_by_plan().is_some() => "now ",
+        () => "at the start ",
+    };
     Some(format!("{}{certified}: {of}{scanned} % of requested{areas}.", readiness(look)))
 }
 
@@ -158,10 +166,16 @@ fn ready(look: &Look, is_complete: bool) -> (Role, String) {
                 0 => String::new(),
                 n => format!("; {} left out{smaller}", text::counted(n, "area")),
             };
-            if look.model.live.is_plan_of_the_way() {
-                format!("{state} The plan at the start scans {scanned} % of the requested floor{areas}.")
-            } else {
-                format!("{state} Scans {scanned} % of the requested floor{areas}.")
+            let live = &look.model.live;
+            let at_start = live.left_out_at_start().map(|left_out| text::percent(left_out.scanned()));
+            match (live.is_plan_of_the_way(), live.left_out_by_plan(), at_start) {
+                (true, Some(_), Some(first)) => format!(
+                    "{state} With this plan, the run scans {scanned} % of the requested floor (promised {first} %){areas}."
+                ),
+                (true, None, _) => {
+                    format!("{state} The plan at the start scans {scanned} % of the requested floor{areas}.")
+                }
+                _ => format!("{state} Scans {scanned} % of the requested floor{areas}."),
             }
         }
         None if is_complete && is_blocked(look) => {
@@ -187,6 +201,10 @@ fn certificate(look: &Look, columns: usize) -> Option<(Role, String)> {
         return Some((Role::Text, "tether limits checked before each way".into()));
     }
     let tether = look.run.tether.as_ref();
+    if look.run.is_tether_broken() {
+        let words = ["tether TORN: the certificate does not apply", "tether TORN"].map(str::to_owned);
+        return Some((Role::Crit, text::wording(words, columns)));
+    }
     Some(match tether.and_then(|tether| tether.certified) {
         Some(true) => {
             let pull = pull(look);
@@ -206,7 +224,7 @@ fn certificate(look: &Look, columns: usize) -> Option<(Role, String)> {
 /// The pull that the plan needs.
 fn pull(look: &Look) -> String {
     let pull = look.run.tether.as_ref().and_then(|tether| tether.promised_pull);
-    pull.map_or_else(|| "pull not checked".into(), |pull| format!("pull {}", pull.text()))
+    pull.map_or_else(|| "pull not checked".into(), |pull| format!("reel needs {}", pull.text()))
 }
 
 /// The objections to the plan, and the warnings of its certificate.

@@ -74,10 +74,8 @@ fn lines(model: &Model, result: &RunResult, columns: usize) -> Vec<Parts> {
     lines.extend(plates::worst(model, columns).filter(|_| columns >= WORST));
     lines.extend(worst(result, columns));
     if model.live.is_replay() && model.live.plans.estimate.is_none() && !model.live.run.is_survey() {
-        lines.extend(wrapped(
-            Role::Dim,
-            "No predictions: a run does not keep those that were made before it.",
-        ));
+        lines
+            .extend(wrapped(Role::Dim, "No predictions: the run did not start with a plan that has a path."));
     }
     lines
 }

@@ -176,7 +176,7 @@ fn notes(model: &Model, result: &RunResult) -> Vec<String> {
             format!("Critical zone, {width_mm} mm along the shell: done.")
         } else {
             let (done_m, length_m) = (text::number(zone.done_m, 1), text::number(zone.length_m, 1));
-            format!("Critical zone, {width_mm} mm along the shell: NOT done, full width on {done_m} of {length_m} m.")
+            format!("Critical zone, {width_mm} mm along the shell: done on {done_m} of {length_m} m.")
         }
     });
     let plates = model.live.floor().filter(|floor| !floor.plates.is_empty()).map(|floor| {
