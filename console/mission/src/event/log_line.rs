@@ -1,21 +1,24 @@
 //! Events as lines of text. The log on the screen, the recording and the command line use the same words.
 
+mod live;
+mod orders;
+mod planners;
+mod tether;
+
+pub use planners::late_text;
+
 use super::{
-    Event, EventKind, OfferStage, PlanDropped, PlanMade, PlanTaken, SurveyWay, TetherAlarm, bias_text,
-    pulse_failure_text, pulse_text,
+    Event, EventKind, SurveyWay, bias_text, pulse_failure_text, pulse_text,
     severity::{self, Severity},
 };
 use crate::engine::side;
-use crate::{
-    clock,
-    order::{Check, CheckOutcome, Injection, Note, Noted, Order, RangeFault},
-    outline,
-    phase::{Outcome, StepTo},
-};
-use planner_api::LogLevel;
+use crate::{clock, outline, phase::Outcome};
+use live::{of_link, of_notice};
+use orders::{injection_text, note_text, order_text};
+use planners::{of_better_plan, of_planner, of_shadow};
 use positioning::{Exclusion, Integrity};
-use vehicle::port::{LinkSeen, Notice};
-use world::{Station, StationId, beside_limit, coverage::percent_text, tether::Certificate};
+use tether::of_tether;
+use world::{Station, StationId, beside_limit, coverage::percent_text};
 
 /// A line of the event log: its severity, its source and its text.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -297,268 +300,6 @@ fn awaited_text(limit_m: f64, ends_t_s: f64, has_stations: bool) -> String {
              mission at T+{}; Ctrl-C ends it now",
             clock(ends_t_s)
         )
-    }
-}
-
-fn of_link(link: &LinkSeen) -> LogLine {
-    let LinkSeen { heard, missed, faulty, unmeasured_s, .. } = link;
-    let unmeasured =
-        if *unmeasured_s > 0.0 { format!(", motion unknown for {unmeasured_s:.2} s") } else { String::new() };
-    let readings = if *heard == 1 { "reading" } else { "readings" };
-    let figures = format!("{heard} {readings} arrived, {missed} missing, {faulty} faulty{unmeasured}");
-    match (link.trouble(), link.state.is_heard()) {
-        (None, _) => line(Severity::Info, "vehicle", format!("link up: {figures}")),
-        (Some(why), true) => line(Severity::Warn, "vehicle", format!("{why} ({figures})")),
-        (Some(why), false) => line(Severity::Crit, "vehicle", format!("{why} ({figures})")),
-    }
-}
-
-fn of_notice(notice: &Notice) -> LogLine {
-    let (severity, text) = match notice {
-        Notice::OtherVehicle { vehicle, differs } => (
-            Severity::Warn,
-            format!(
-                "another vehicle, {}, answers on the same connection: {}",
-                vehicle.name,
-                differs.join(", ")
-            ),
-        ),
-        Notice::FaultyMessages { count: 1, first, .. } => {
-            (Severity::Warn, format!("1 faulty message from the vehicle was ignored: {first}"))
-        }
-        Notice::FaultyMessages { count, first, last } => (
-            Severity::Warn,
-            format!(
-                "{count} faulty messages from the vehicle were ignored; the first: {first}; the last: {last}"
-            ),
-        ),
-        Notice::ClockRate { field, rate, is_off: true } => (
-            Severity::Warn,
-            format!(
-                "the vehicle's clock advances {rate:.3} s in each second of the console's clock (`{field}`); correct it"
-            ),
-        ),
-        Notice::ClockRate { field, rate, is_off: false } => (
-            Severity::Info,
-            format!(
-                "the vehicle's clock advances {rate:.3} s in each second of the console's clock again (`{field}`)"
-            ),
-        ),
-    };
-    line(severity, "vehicle", text)
-}
-
-fn of_planner(kind: &EventKind) -> Option<LogLine> {
-    Some(match kind {
-        EventKind::PlannerChosen { choice, info, from, .. } => {
-            let before = match from {
-                Some(id) if *id == choice.id => ", restarted".to_owned(),
-                Some(id) => format!(", took over from {id}"),
-                None => String::new(),
-            };
-            line(Severity::Info, "plan", format!("planner {} {} active{before}", choice.id, info.version))
-        }
-        EventKind::ParametersChanged { choice, .. } => {
-            line(Severity::Info, "plan", format!("parameters of {} changed", choice.id))
-        }
-        EventKind::Planned { planner, length_m, complete, .. } => {
-            let part = if *complete { "" } else { " (partial)" };
-            line(Severity::Info, "plan", format!("{planner} planned {length_m:.1} m{part}"))
-        }
-        EventKind::PlannerLogged { planner, level, message } => match level {
-            LogLevel::Debug => line(Severity::Debug, "plan", format!("{planner}: {message}")),
-            LogLevel::Info => line(Severity::Info, "plan", format!("{planner}: {message}")),
-            LogLevel::Warn => line(Severity::Watch, "plan", format!("{planner}: {message}")),
-        },
-        EventKind::PlannerPrepared { choice, info, .. } => {
-            line(Severity::Info, "plan", format!("preparing planner {} {}", choice.id, info.version))
-        }
-        EventKind::PlannerRejected { planner, why } => {
-            line(Severity::Warn, "plan", format!("planner {planner} will not take over: {why}"))
-        }
-        EventKind::PlannerLate { planner, ticks } => {
-            line(Severity::Watch, "plan", format!("{}; the robot stood still", late_text(planner, *ticks)))
-        }
-        EventKind::PlannerFailed { fault, .. } => line(fault.severity(), "plan", fault.message.clone()),
-        _ => return None,
-    })
-}
-
-fn of_better_plan(kind: &EventKind) -> Option<LogLine> {
-    Some(match kind {
-        EventKind::BetterPlanned(PlanMade { planner, flown, better, objection: None, .. }) => {
-            let text = format!("better plan of {planner}: {}", better.saving(flown));
-            line(Severity::Watch, "plan", text)
-        }
-        EventKind::BetterPlanned(PlanMade { planner, objection: Some(why), .. }) => {
-            line(Severity::Info, "plan", format!("{planner} replanned: {why}; the current plan is kept"))
-        }
-        EventKind::BetterPlanTaken(PlanTaken { planner, flown, better }) => {
-            let text = format!("better plan of {planner} taken: {}", better.saving(flown));
-            line(Severity::Info, "plan", text)
-        }
-        EventKind::BetterPlanDropped(PlanDropped { planner, why, stage, .. }) => match stage {
-            None => line(Severity::Info, "plan", format!("better plan of {planner} dropped: {why}")),
-            Some(OfferStage::Offered) => line(Severity::Info, "plan", format!("offer ended: {why}")),
-            Some(OfferStage::Accepted) => {
-                line(Severity::Watch, "plan", format!("accepted better plan dropped: {why}"))
-            }
-        },
-        _ => return None,
-    })
-}
-
-fn of_shadow(kind: &EventKind) -> Option<LogLine> {
-    Some(match kind {
-        EventKind::ShadowBegan { choice, info, .. } => {
-            line(Severity::Info, "plan", format!("planner {} {} runs in shadow", choice.id, info.version))
-        }
-        // Faults in shadow require no action by the operator, because a different planner is active.
-        EventKind::Shadowed { of } => {
-            let LogLine { severity, source, text } = match &**of {
-                EventKind::Certified { .. } => of_tether(of)?,
-                other => of_planner(other)?,
-            };
-            line(severity.min(Severity::Watch), source, format!("shadow: {text}"))
-        }
-        EventKind::ShadowMissed { ticks, .. } => {
-            line(Severity::Info, "plan", format!("shadow: {} missed", ticks_text(*ticks)))
-        }
-        EventKind::PromotionRefused { planner, why } => {
-            line(Severity::Warn, "plan", format!("planner {planner} stays in shadow: {why}"))
-        }
-        EventKind::Promoted { planner, tally } => {
-            let (answered, missed) = (tally.answered, ticks_text(tally.missed));
-            let text =
-                format!("planner {planner} promoted from shadow: {answered} steps answered, {missed} missed");
-            line(Severity::Info, "plan", text)
-        }
-        EventKind::ShadowEnded { planner, why } => {
-            line(Severity::Watch, "plan", format!("planner {planner} no longer runs in shadow: {why}"))
-        }
-        _ => return None,
-    })
-}
-
-/// How late a planner answered, as a phrase without a full stop.
-pub fn late_text(planner: &str, ticks: u64) -> String {
-    format!("planner {planner} answered {} late", ticks_text(ticks))
-}
-
-fn ticks_text(ticks: u64) -> String {
-    if ticks == 1 { "1 tick".into() } else { format!("{ticks} ticks") }
-}
-
-fn of_tether(kind: &EventKind) -> Option<LogLine> {
-    Some(match kind {
-        EventKind::TetherAlarmRaised { alarm, reached } => {
-            let severity = if *reached { Severity::Crit } else { Severity::Warn };
-            let near = if *reached || *alarm == TetherAlarm::Strayed { "" } else { "near limit: " };
-            line(severity, "tether", format!("{near}{alarm}"))
-        }
-        EventKind::TetherAlarmCleared { alarm } => {
-            line(Severity::Info, "tether", format!("{} back within limit", alarm.word()))
-        }
-        EventKind::Certified { planner, refused, certificate } => line(
-            severity::of_certificate(certificate),
-            "tether",
-            certificate_text(planner, *refused, certificate),
-        ),
-        _ => return None,
-    })
-}
-
-fn order_text(order: &Order, stations: &[Station]) -> String {
-    match order {
-        Order::Plan => "plan".into(),
-        Order::StepTo(StepTo::LaneEnd) => "step to the end of the lane".into(),
-        Order::StepTo(StepTo::Event) => "step to the next event".into(),
-        Order::Start => "start".into(),
-        Order::StartPlan(plan) => format!("start of plan {}", plan.short()),
-        Order::NoteOutlooks(outlooks) => {
-            let planners: Vec<&str> = outlooks.iter().map(|outlook| outlook.choice.id.as_str()).collect();
-            format!("forecasts compared: {}", planners.join(", "))
-        }
-        Order::NoteChecks(checks) => checks_text(checks),
-        Order::Hold => "hold".into(),
-        Order::Resume => "resume".into(),
-        Order::Step => "single step".into(),
-        Order::FlyUncertified => "run uncertified plan".into(),
-        Order::DriveBack => "drive back".into(),
-        Order::Abort => "end mission".into(),
-        Order::Terminate => "end mission, by a signal to the process".into(),
-        Order::CheckPlanner => {
-            "check the planners, ordered by the console: the process of one planner has ended".into()
-        }
-        Order::ChoosePlanner(choice) => format!("change planner to {}", choice.id),
-        Order::Shadow(choice) => format!("run planner {} in shadow", choice.id),
-        Order::Promote => "promote the planner in shadow".into(),
-        Order::DropShadow => "end the shadow".into(),
-        Order::TakePlan => "take the better plan".into(),
-        Order::SetParameter { key, value } => format!("set {key} = {value}"),
-        Order::DrawZone(_) => "draw no-go zone".into(),
-        Order::Inject(injection) => injection_text(injection, stations),
-        Order::UseStation { station, used, by } => {
-            let word = if *used { "include" } else { "exclude" };
-            format!("{word} {}{}", station_text(*station, stations), by_text(by.as_ref()))
-        }
-        Order::Note(note) => note_text(note),
-    }
-}
-
-fn checks_text(checks: &[Check]) -> String {
-    let count = |outcome| checks.iter().filter(|check| check.outcome == outcome).count();
-    let parts = [
-        (CheckOutcome::Passed, "ok"),
-        (CheckOutcome::Ticked, "by hand"),
-        (CheckOutcome::Warning, "with a warning"),
-        (CheckOutcome::Failed, "failed"),
-    ];
-    let parts = parts.map(|(outcome, word)| (count(outcome), word));
-    let parts = parts.iter().filter(|(n, _)| *n > 0).map(|(n, word)| format!("{n} {word}"));
-    format!("pre-flight: {}", parts.collect::<Vec<_>>().join(", "))
-}
-
-/// The end of a sentence that names the person who acted: ` by NAME`, or nothing.
-fn by_text(by: Option<&String>) -> String {
-    by.map_or_else(String::new, |name| format!(" by {name}"))
-}
-
-fn note_text(Note { what, by }: &Note) -> String {
-    let by = by_text(by.as_ref());
-    match what {
-        Noted::Acknowledged { text, .. } => format!("alarm acknowledged{by}: {text}"),
-        Noted::Shelved { text, for_s, reason, .. } => {
-            format!("alarm shelved{by} for {} min ({reason}): {text}", (for_s / 6.0).round() / 10.0)
-        }
-        Noted::Unshelved { text, .. } => format!("alarm unshelved{by}: {text}"),
-        Noted::PresetTaken { preset, planner } => format!("preset {preset} of {planner} taken{by}"),
-    }
-}
-
-fn injection_text(Injection { station, fault, for_s, by }: &Injection, stations: &[Station]) -> String {
-    let fault = match fault {
-        RangeFault::Dead => "dead".to_owned(),
-        RangeFault::Offset(metres) => format!("ranges {metres} m too long"),
-    };
-    let by = by_text(by.as_ref());
-    format!("fault injected{by}: {} {fault} for {for_s} s", station_text(*station, stations))
-}
-
-fn certificate_text(planner: &str, refused: bool, certificate: &Certificate) -> String {
-    let reasons = certificate.reasons.join("; ");
-    match (refused, certificate.certified) {
-        (true, _) => format!("plan of {planner} refused: {reasons}"),
-        (false, false) => format!("plan of {planner} runs uncertified: {reasons}"),
-        (false, true) => {
-            let left =
-                certificate.end_length_m.map_or_else(String::new, |m| format!(", {m:.1} m out after return"));
-            let pull = certificate.pull.map_or_else(String::new, |pull| format!(", pull {}", pull.text()));
-            let length_m = certificate.tether_length_max_m;
-            let figures = format!("at most {length_m:.1} m of tether out{left}{pull}");
-            let whole = [figures].into_iter().chain(certificate.warnings.iter().cloned());
-            format!("plan of {planner} certified: {}", whole.collect::<Vec<_>>().join("; "))
-        }
     }
 }
 
