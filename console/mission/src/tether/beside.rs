@@ -290,6 +290,11 @@ impl Tether {
     /// A cable that follows the robot lies along the taut line, and its length may fall: it is the measure for what comes after.
     pub(super) fn follow_lying(&mut self) {
         let follows = self.excess_m() <= FOLLOWS_M;
+        // A reel that is seen to pull, and that is strong enough from here, has taken up what lay on the floor.
+        let works = self.take_up.is_seen_to_pull() && !self.is_reel_too_weak() && self.slack.loose_m() == 0.0;
+        if follows && works && self.torn().is_none() {
+            self.lying = None;
+        }
         let out_m = self.payout.measured_m().filter(|_| follows);
         if let (Some(lying), Some(out_m)) = (&mut self.lying, out_m) {
             lying.out_m = lying.out_m.map(|known_m| known_m.min(out_m));

@@ -143,6 +143,18 @@ fn a_reel_that_takes_cable_up_again_on_the_way_beside_it_holds_the_robot() {
 }
 
 #[test]
+fn once_the_reel_has_taken_up_what_lay_on_the_floor_the_way_back_is_the_return_path_again() {
+    let mut flight = dragged(Some(0.5), Some(2.6));
+    flight.tick(&[Order::DriveBack]);
+    flight.tick(&[Order::Hold]);
+    assert!(leads_beside(&flight), "{:?}", flight.mission.way_back());
+    (flight.reel_pull_n, flight.pull_n, flight.caught_m) = (Some(10.0), Some(9.0), 0.0);
+    flight.fly(20);
+    let way = flight.mission.way_back().map(|way| way.to_string()).unwrap_or_default();
+    assert!(way.starts_with("driving back") && !way.contains("beside"), "{way}");
+}
+
+#[test]
 fn without_a_sensor_of_the_pull_the_robot_keeps_beside_a_cable_that_may_be_slack_and_ends_entangled() {
     let mut flight = Flight::new(MissionConfig { live: true, ..tethered(20.0) });
     flight.reel = Cable::new(Point::new(-3.0, 0.0), &drawing().boundary, &[]).ok();
