@@ -136,6 +136,12 @@ fn fly(
     plugins: &PluginDirs,
     (screen, given_up): (&RunOutbox, &AtomicBool),
 ) -> Result<Forecast, String> {
+    if flight.mission().has_reel_stopped() {
+        return Err(
+            "the reel has stopped, but a forecast assumes that it takes the tether up: repair it first"
+                .to_owned(),
+        );
+    }
     let mut answers = InOrder::new(hosts::host(scenario, plugins));
     let mut ahead = Ahead::new(choice);
     // A running mission accepts another planner only once it is held.

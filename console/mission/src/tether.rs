@@ -19,9 +19,10 @@ mod laid;
 mod payout;
 mod slack;
 mod survey;
+mod take_up;
 mod torn;
 
-pub(crate) use beside::Clearance;
+pub use beside::Clearance;
 pub use certifying::certify_from_start;
 pub(crate) use certifying::{ends_at_anchor, return_path_ends};
 
@@ -36,8 +37,9 @@ use driven::Driven;
 use laid::Laid;
 use payout::{Explained, Payout};
 use planner_api::Plan;
-use slack::Slack;
+use slack::{ReelState, Slack};
 use std::sync::Arc;
+use take_up::TakeUp;
 use torn::{Found, Least, Torn};
 use world::{
     ObstacleMap, Point, Readings, Shape, World,
@@ -67,7 +69,10 @@ pub struct Tether {
     without_home_s: f64,
     payout: Payout,
     slack: Slack,
+    take_up: TakeUp,
     torn: Torn,
+    /// Length of the cable when it was found torn, metres.
+    whole_m: Option<f64>,
     /// Whether a vehicle drags the cable: a vehicle without a sensor of the pull is judged by its encoder alone.
     is_live: bool,
     /// The cable on the floor beside which the robot drives back, or the rest of a torn one.
@@ -97,7 +102,9 @@ impl Tether {
             without_home_s: 0.0,
             payout: Payout::default(),
             slack: Slack::default(),
+            take_up: TakeUp::default(),
             torn: Torn::default(),
+            whole_m: None,
             is_live: false,
             lying: None,
             laid: None,
@@ -172,13 +179,14 @@ impl Tether {
     /// Records the measured length paid out and the pull, and the time that has passed since the last call, seconds.
     /// `error_m` is the position error with which the cable was laid, metres; `None` while the position is lost.
     pub fn measure(&mut self, readings: &Readings, error_m: Option<f64>, world: &World, passed_s: f64) {
-        self.lay(readings, error_m.is_some(), world);
         let straight_m = (self.cable.tip() - self.config.anchor).norm();
         let least = error_m.map(|error_m| Least {
             taut_m: self.cable.length_m() - error_m,
             straight_m: self.is_live.then_some(straight_m - error_m),
         });
-        self.torn.take(readings, least, self.config.reel.as_ref(), passed_s);
+        let reel = self.config.reel;
+        self.torn.take(readings, least, reel.as_ref(), passed_s);
+        self.lay(readings, error_m.is_some(), world);
         if self.torn().is_some() {
             if self.lying.is_none() {
                 self.leave_lying();
@@ -186,16 +194,37 @@ impl Tether {
             // What is left of the cable is neither slack nor caught.
             (self.payout, self.slack) = (Payout::default(), Slack::default());
             self.payout.take(readings.paid_out_m, None, self.config.limits.reel_length_m, passed_s);
-            self.slack.take(None, pull_n(readings), self.config.reel.as_ref());
+            self.slack.take(
+                None,
+                pull_n(readings),
+                ReelState { reel: reel.as_ref(), ..ReelState::default() },
+            );
             return;
         }
         let (length_m, points) = (self.cable.length_m(), self.driven.points().len());
-        let pull_ratio = self.pull_needed_n().zip(self.config.reel).map_or(0.0, |(n, reel)| n / reel.pull_n);
+        self.take_up.take(readings, reel.as_ref(), passed_s);
+        let pull_ratio = self.pull_needed_n().zip(reel).map_or(0.0, |(n, reel)| n / reel.pull_n);
         let explained = error_m.map(|error_m| Explained { length_m, error_m, points, pull_ratio });
         let excess_m = explained.and(readings.paid_out_m).map(|out_m| out_m - length_m);
-        let can_be_caught = self.slack.take(excess_m, pull_n(readings), self.config.reel.as_ref());
+        // A reel that pulls and is strong enough takes up the sag of a cable that jams and slides in jumps.
+        let is_strong =
+            reel.is_some_and(|reel| self.take_up.is_seen_to_pull() && pull_ratio <= reel.pull_ratio_max);
+        let sag_m = explained.filter(|_| is_strong).map_or(0.0, Explained::sag_m);
+        let has_stopped = self.take_up.has_stopped();
+        let state = ReelState { reel: reel.as_ref(), has_stopped, sag_m };
+        let can_be_caught = self.slack.take(excess_m, pull_n(readings), state);
         let explained = explained.filter(|_| can_be_caught);
         self.payout.take(readings.paid_out_m, explained, self.config.limits.reel_length_m, passed_s);
+        self.follow_lying();
+        if self.payout.is_expected() {
+            self.take_up.expect();
+        }
+        if self.payout.is_snagged() && !self.take_up.can_be_caught(readings, reel.as_ref()) {
+            self.payout.explain();
+            if !has_stopped {
+                self.slack.distrust();
+            }
+        }
     }
 
     /// The pull at the reel that taking up the cable needs, newtons; `None` if the scenario does not describe the reel.
@@ -275,7 +304,7 @@ impl Tether {
         let (out_m, reel_length_m) = (self.payout.at_least_m(explained_m), limits.reel_length_m);
         let (wrap_rad, sum_rad) = (self.cable.wrap_max_rad(), self.cable.wrap_total_rad());
         let (wrap_limit_rad, sum_limit_rad) = (limits.wrap_max_rad, limits.wrap_total_max_rad);
-        let or_slack = self.is_live && self.slack.measured().is_none();
+        let or_slack = self.may_be_slack();
         let snag = TetherAlarm::Snag { paid_out_m: out_m, explained_m, or_slack };
         if let Some(torn) = self.torn() {
             // Like a snag, a torn cable has no intermediate levels; the limits apply to a cable that leads to the robot.
@@ -305,6 +334,11 @@ impl Tether {
     /// The path driven, from the anchor on, without the parts that were driven out and back.
     pub(crate) fn way_driven(&self) -> &[Point] {
         self.driven.points()
+    }
+
+    /// The robot's end of the cable, at its estimated position.
+    pub fn tip(&self) -> Point {
+        self.cable.tip()
     }
 
     /// The place where the cable is attached.

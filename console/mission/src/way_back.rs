@@ -50,6 +50,24 @@ pub struct WayBack {
     pub slack_m: Option<f64>,
 }
 
+/// Highest speed beside a tether that lies on the floor, metres per second: its place is known less well than that of a taut
+/// one.
+const BESIDE_M_PER_S: f64 = 0.1;
+
+impl WayBack {
+    /// Returns the highest speed on the way, metres per second, of a robot with a given highest speed.
+    ///
+    /// ```
+    /// # use mission::{Home, WayBack};
+    /// let way = WayBack { to: Home::Anchor, path: vec![], length_m: 9.0, clearance_m: 0.1, slack_m: None };
+    /// assert_eq!(way.fastest_m_per_s(0.4), 0.4);
+    /// assert_eq!(WayBack { slack_m: Some(1.0), ..way }.fastest_m_per_s(0.4), 0.1);
+    /// ```
+    pub fn fastest_m_per_s(&self, v_max_m_per_s: f64) -> f64 {
+        if self.slack_m.is_some() { v_max_m_per_s.min(BESIDE_M_PER_S) } else { v_max_m_per_s }
+    }
+}
+
 impl fmt::Display for WayBack {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { to, length_m, clearance_m, .. } = self;

@@ -315,7 +315,7 @@ fn tether(tether: &Tether) -> String {
     };
     let over_own = match tether.over_own {
         None | Some(0) => String::new(),
-        Some(n) => format!(", drove over its own tether {}", counted(n, "time")),
+        Some(n) => format!(", hull over its own tether {}", counted(n, "time")),
     };
     let torn = match tether {
         Tether { torn_at_end: true, broken_at_s: None, .. } => ", truly torn when the run ended",

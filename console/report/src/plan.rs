@@ -294,7 +294,13 @@ fn pull(certificate: &Certificate) -> String {
     let figures = certificate.pull.map_or_else(String::new, |pull| {
         format!(", ratio {:.2}; the robot pulls at most {:.1} N", pull.ratio(), pull.robot_needed_n)
     });
-    format!("{}{figures}\n{}", text.replacen("pull ", "pull      ", 1), warnings.concat())
+    let own_gap = certificate.own_gap.map_or_else(String::new, |own_gap| {
+        format!(
+            "own gap   on the way in, the hull comes no nearer than {} to its own taut tether\n",
+            own_gap.text()
+        )
+    });
+    format!("{}{figures}\n{own_gap}{}", text.replacen("pull ", "pull      ", 1), warnings.concat())
 }
 
 #[cfg(test)]

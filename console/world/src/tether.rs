@@ -6,7 +6,8 @@
 //! no bounds.
 //!
 //! Read the files in this order: `cable` (the exact taut line), `cable_obstacles` (the obstacles that it can bear on),
-//! `certify` (the effect of a whole path on the cable), `pull` (the force that moves the cable), `homotopy` (the cheap cross-check), `geodesic` (the shortest
+//! `certify` (the effect of a whole path on the cable), `pull` (the force that moves the cable), `own_gap` (how near the hull comes
+//! to its own cable), `homotopy` (the cheap cross-check), `geodesic` (the shortest
 //! cable that would suffice).
 
 mod cable;
@@ -20,6 +21,7 @@ mod geodesic;
 mod ground;
 mod home;
 mod homotopy;
+mod own_gap;
 mod pull;
 mod reach;
 mod reasons;
@@ -43,6 +45,7 @@ pub use cuts::crossings;
 pub use geodesic::Geodesic;
 pub use ground::Ground;
 pub use homotopy::{HomotopySignature, RayCrossing, Rays};
+pub use own_gap::OwnGap;
 pub use pull::{Drag, Pull, PullLimits, Reel};
 pub use reach::Reach;
 pub use reasons::BACK_M;

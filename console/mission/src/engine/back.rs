@@ -25,9 +25,6 @@ use world::Point;
 const THERE_M: f64 = 0.1;
 /// Speed at corners and at the end of the way, metres per second.
 const SLOW_M_PER_S: f64 = 0.05;
-/// Highest speed beside a tether that lies on the floor, metres per second: its place is known less well than that of a taut
-/// one.
-const BESIDE_M_PER_S: f64 = 0.1;
 
 /// A drive back that was ordered.
 #[derive(Clone)]
@@ -37,18 +34,15 @@ pub(super) struct Back {
     at_corner: CornerPatience,
     /// Whether the way leads beside a tether that lies on the floor.
     is_beside: bool,
+    /// Highest speed on the way, metres per second.
+    fastest_m_per_s: f64,
 }
 
 impl Back {
-    fn along(way: &WayBack) -> Self {
+    fn along(way: &WayBack, v_max_m_per_s: f64) -> Self {
         let follower = PathFollower::exact(&way.path);
-        let is_beside = way.slack_m.is_some();
-        Self { to: way.to, follower, at_corner: CornerPatience::default(), is_beside }
-    }
-
-    /// Highest speed on the way, metres per second, of a robot with a given highest speed.
-    fn fastest(&self, v_max_m_per_s: f64) -> f64 {
-        if self.is_beside { v_max_m_per_s.min(BESIDE_M_PER_S) } else { v_max_m_per_s }
+        let (is_beside, fastest_m_per_s) = (way.slack_m.is_some(), way.fastest_m_per_s(v_max_m_per_s));
+        Self { to: way.to, follower, at_corner: CornerPatience::default(), is_beside, fastest_m_per_s }
     }
 
     /// The point to drive to.
@@ -80,6 +74,11 @@ impl Mission {
         self.known.way_back()
     }
 
+    /// Whether the reel of the tether is known to have stopped: it does not take the tether up.
+    pub fn has_reel_stopped(&self) -> bool {
+        self.known.tether.as_ref().is_some_and(Tether::has_reel_stopped)
+    }
+
     /// Begins to drive back. The planner's plan and any candidate are dropped.
     pub(super) fn drive_back(&mut self) {
         // The order is accepted only if there is a way.
@@ -97,7 +96,7 @@ impl Mission {
         if let (Some(tether), Some(_)) = (&mut self.known.tether, way.slack_m) {
             tether.leave_lying();
         }
-        self.known.back = Some(Back::along(&way));
+        self.known.back = Some(Back::along(&way, self.known.config.limits.v_max_m_per_s));
         self.happened.push(EventKind::ReturnBegan { way });
     }
 
@@ -136,7 +135,13 @@ impl Mission {
         let done = format!("ended by operator: robot is back {place}");
         let tether = self.known.tether.as_ref().filter(|_| back.to == Home::Anchor);
         let lies = tether.filter(|_| back.is_beside).map_or_else(String::new, Tether::lies_words);
-        match tether.and_then(|tether| tether.left_out(self.known.cable_world())) {
+        let left = tether.and_then(|tether| {
+            // A torn cable does not lead to the robot, so it is not hooked around anything.
+            let is_whole = tether.torn().is_none();
+            let left = is_whole.then(|| tether.left_out(self.known.cable_world())).flatten();
+            left.or_else(|| tether.left_by_encoder())
+        });
+        match left {
             Some(why) => self.end(Outcome::Entangled, format!("{done}, but {why}{lies}")),
             None => self.end(Outcome::Aborted, format!("{done}{lies}")),
         }
@@ -164,7 +169,7 @@ impl Known {
         let braking = Braking::of(&self.config.limits);
         let before = |way_m: f64| braking.speed_before(way_m, SLOW_M_PER_S);
         let to_corner = back.follower.corner_m(here).map_or(f64::INFINITY, before);
-        let fastest = back.fastest(self.config.limits.v_max_m_per_s);
+        let fastest = back.fastest_m_per_s;
         let speed = before(back.follower.left_m(here) - THERE_M).min(to_corner).min(fastest);
         let velocity = onward.try_normalize(1e-9).map_or(onward, |direction| direction * speed);
         Some(self.sending().as_sent(Command::velocity(velocity)))

@@ -55,6 +55,8 @@ pub(super) struct Known {
     pub last_drive: Drive,
     /// The drive back that was ordered, until the mission is resumed.
     pub back: Option<Back>,
+    /// The tether of a held robot when its finding last changed: the question and the order to drive back take the same way.
+    pub resting: Option<Tether>,
     /// The no-go zones that the hull is in.
     pub breached: Vec<String>,
     /// Why the vehicle must not be driven in this tick, as a clause.
@@ -85,6 +87,7 @@ impl Known {
             trail: vec![start],
             last_drive: Drive::STILL,
             back: None,
+            resting: None,
             breached: Vec::new(),
             trouble: None,
             config,

@@ -7,6 +7,7 @@ mod caught;
 mod covering;
 mod finishing;
 mod guarding;
+mod lying;
 mod returning;
 mod shadow;
 mod start;
@@ -310,8 +311,9 @@ struct Flight {
     reel: Option<Cable>,
     /// Additional length that the reel has paid out, metres.
     caught_m: f64,
-    /// Pull of the cable at the robot, newtons.
+    /// Pull of the cable at the robot, and at the reel, newtons.
     pull_n: Option<f64>,
+    reel_pull_n: Option<f64>,
     sightings: Vec<Sighting>,
     events: Vec<Event>,
     /// Number of ticks for which an ask of this tick stays unanswered.
@@ -350,6 +352,7 @@ impl Flight {
             reel: None,
             caught_m: 0.0,
             pull_n: None,
+            reel_pull_n: None,
             sightings: vec![],
             events: vec![],
             delay: Box::new(|_, _| 0),
@@ -382,6 +385,7 @@ impl Flight {
             contact: false,
             paid_out_m: self.reel.as_ref().map(|cable| cable.length_m() + self.caught_m),
             robot_pull_n: self.pull_n,
+            reel_pull_n: self.reel_pull_n,
             pressure_pa: self.pressure_pa,
             scan: self.scan(),
             pulses: if std::mem::take(&mut self.pulse) { exchange() } else { Vec::new() },

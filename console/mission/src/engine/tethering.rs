@@ -30,6 +30,11 @@ impl Known {
             tether.drag_to(self.locator.position());
         }
         tether.measure(readings, error_m, world, self.config.tick_s);
+        self.resting = match self.resting.take() {
+            _ if !matches!(self.phase, Phase::Held(_)) => None,
+            Some(before) if !map_changed && tether.is_as_before(&before) => Some(before),
+            _ => Some(tether.clone()),
+        };
         let events = tether.update(world, map, self.config.tick_s);
         let reached = events.iter().find_map(|event| match event {
             EventKind::TetherAlarmRaised { alarm, reached: true } => Some(alarm.clone()),

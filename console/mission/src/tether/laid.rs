@@ -11,9 +11,15 @@ use world::{Point, Shape, Vector, World, tether::Cable};
 /// Length of a link, metres; a little more or less, so that whole links make up the length off the reel.
 const LINK_M: f64 = 0.1;
 /// How often the ends of the chain are drawn in one step.
-const ROUNDS: usize = 10;
+const ROUNDS: usize = 20;
 /// Distance for the slope of the distance to a shape, metres.
 const SLOPE_M: f64 = 1e-4;
+/// Length of cable next to the robot that leads away from it, in radii of the hull.
+const LEADS_AWAY: f64 = 3.0;
+/// Distance between the places of a way at which the chain is judged, metres.
+const STEP_M: f64 = 0.05;
+/// Length that a reel takes up between two looks at the chain, metres.
+const TAKEN_UP_M: f64 = 0.1;
 /// Distance from its line within which points are left out of it, metres.
 const DRAWN_M: f64 = 0.03;
 
@@ -24,6 +30,8 @@ pub(super) struct Laid {
     nodes: Vec<Point>,
     /// Length of each link, metres.
     link_m: f64,
+    /// Whether the first node is a loose end: the rest of a torn cable, which only the robot draws.
+    is_loose: bool,
 }
 
 impl Laid {
@@ -33,11 +41,36 @@ impl Laid {
         if nodes.len() < 2 {
             nodes = vec![taut.tip(); 2];
         }
-        Self { nodes, link_m: LINK_M }
+        Self { nodes, link_m: LINK_M, is_loose: false }
     }
 
     /// Moves the robot, with a given length off the reel, metres. A chain much longer than this has no meaning.
     pub(super) fn step(&mut self, here: Point, out_m: f64, world: &World) {
+        if !self.is_loose {
+            self.lengthen(out_m);
+        }
+        let last = self.nodes.len() - 1;
+        self.nodes[last] = here;
+        if self.is_loose {
+            (0..last).rev().for_each(|node| self.draw(node, node + 1, world));
+            return;
+        }
+        for _ in 0..ROUNDS {
+            (1..last).rev().for_each(|node| self.draw(node, node + 1, world));
+            (1..last).for_each(|node| self.draw(node, node - 1, world));
+        }
+    }
+
+    /// The cable is torn, and only its last metres are still at the robot; they lie where they lay.
+    pub(super) fn tear(&mut self, rest_m: f64) {
+        self.is_loose = true;
+        let links = (rest_m.max(0.0) / self.link_m.max(1e-3)).ceil() as usize;
+        let drawn_in = self.nodes.len().saturating_sub(links.max(1) + 1);
+        self.nodes.drain(..drawn_in);
+    }
+
+    /// Gives the chain a length, metres, by links beside the anchor.
+    fn lengthen(&mut self, out_m: f64) {
         let links = ((out_m / LINK_M).round().clamp(1.0, 1e4)) as usize;
         self.link_m = (out_m / links as f64).max(0.0);
         while self.nodes.len() > links + 1 {
@@ -47,16 +80,44 @@ impl Laid {
             let beside_anchor = self.nodes[0] + (self.nodes[1] - self.nodes[0]) * 0.5;
             self.nodes.insert(1, beside_anchor);
         }
-        let last = self.nodes.len() - 1;
-        self.nodes[last] = here;
-        for _ in 0..ROUNDS {
-            for node in (1..last).rev() {
-                self.draw(node, node + 1, world);
-            }
-            for node in 1..last {
-                self.draw(node, node - 1, world);
+    }
+
+    /// Whether a hull of a given radius, metres, at the robot's place stands on a part of the chain that does not lead straight
+    /// away from it. The simulated cable counts in the same way.
+    pub(super) fn is_under(&self, hull_m: f64) -> bool {
+        let here = self.tip();
+        let beyond = self.without_end(LEADS_AWAY * hull_m);
+        beyond.len() > 1 && world::polyline::distance_m(beyond, here) < hull_m
+    }
+
+    /// Whether a hull of a given radius, metres, that drives along a way comes onto no part of the chain; `out_m` metres stay
+    /// off the reel. `at_place` judges the chain at each place as well.
+    pub(super) fn is_clear_along(
+        &self,
+        way: &[Point],
+        out_m: f64,
+        hull_m: f64,
+        world: &World,
+        mut at_place: impl FnMut(&Self) -> bool,
+    ) -> bool {
+        let mut laid = self.clone();
+        world::polyline::resampled(way, STEP_M).into_iter().all(|at| {
+            laid.step(at, out_m, world);
+            !laid.is_under(hull_m) && at_place(&laid)
+        })
+    }
+
+    /// Whether a hull that stands still comes onto no part of the chain while the reel takes it up to a length, metres.
+    pub(super) fn is_clear_while_taken_up(&self, to_m: f64, hull_m: f64, world: &World) -> bool {
+        let mut laid = self.clone();
+        let here = self.tip();
+        while laid.length_m() > to_m + TAKEN_UP_M {
+            laid.step(here, laid.length_m() - TAKEN_UP_M, world);
+            if laid.is_under(hull_m) {
+                return false;
             }
         }
+        true
     }
 
     /// Draws a node toward another one that is more than a link away, and out of the objects in its way.
@@ -68,6 +129,11 @@ impl Laid {
             self.nodes[node] =
                 world.obstacles.iter().fold(drawn, |at, obstacle| outside(at, &obstacle.shape));
         }
+    }
+
+    /// The robot's end of the chain.
+    pub(super) fn tip(&self) -> Point {
+        self.nodes[self.nodes.len() - 1]
     }
 
     /// The length of the chain, metres.
@@ -156,6 +222,48 @@ mod tests {
             // An excess of 0.1 m already lets 7 m of cable bow by 0.5 m, and a permitted reel leaves up to 0.3 m.
             assert!(far_m.fold(0.0, f64::max) < 0.5, "{n}: {line:?} {taut_line:?}");
         }
+    }
+
+    #[test]
+    fn the_rest_of_a_torn_cable_lies_where_it_lay_and_only_the_robot_draws_it() {
+        let world = tank(&[]);
+        let (mut laid, _) = driven(&world, &[Point::origin(), Point::new(10.0, 0.0)], |taut_m, _| taut_m);
+        laid.tear(4.0);
+        laid.step(Point::new(9.5, 0.5), 0.0, &world);
+        let line = laid.line();
+        assert!((3.9..4.2).contains(&laid.length_m()), "{}", laid.length_m());
+        assert!((line[0] - Point::new(6.0, 0.0)).norm() < 0.15, "{line:?}");
+        for y in 0..60 {
+            laid.step(Point::new(9.5, 0.5 + 0.1 * f64::from(y)), 0.0, &world);
+        }
+        assert!(laid.line()[0].y > 1.5, "drawn behind the robot: {:?}", laid.line());
+        laid.tear(0.0);
+        assert!(laid.length_m() < 0.11);
+    }
+
+    #[test]
+    fn a_hull_on_the_chain_is_seen_on_a_way_and_while_the_reel_takes_the_chain_up() {
+        let world = tank(&[]);
+        let out = [Point::origin(), Point::new(8.0, 0.0)];
+        let (laid, _) = driven(&world, &out, |taut_m, _| taut_m);
+        let clear = |way: &[(f64, f64)]| {
+            let way: Vec<Point> = way.iter().map(|(x, y)| Point::new(*x, *y)).collect();
+            laid.is_clear_along(&way, 8.0, 0.2, &world, |_| true)
+        };
+        assert!(clear(&[(8.0, 0.0), (7.5, 0.6), (3.0, 0.6)]) && !clear(&[(8.0, 0.0), (3.0, 0.0)]));
+        // Around its own cable: a reel that works again draws the cable across the hull.
+        let round = [(8.0, 0.0), (7.5, 0.6), (2.0, 0.6)].map(|(x, y)| Point::new(x, y));
+        let mut beside = laid.clone();
+        for at in polyline::resampled(&round, 0.05) {
+            beside.step(at, 8.0, &world);
+        }
+        assert!(!beside.is_under(0.2));
+        assert!(beside.is_clear_while_taken_up(2.1, 0.2, &world), "the cable comes in beside the robot");
+        let mut crossed = laid;
+        for at in polyline::resampled(&[round[0], round[1], Point::new(4.0, -0.05)], 0.05) {
+            crossed.step(at, 8.0, &world);
+        }
+        assert!(!crossed.is_clear_while_taken_up(4.0, 0.2, &world));
     }
 
     #[test]

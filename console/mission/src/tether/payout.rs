@@ -40,7 +40,7 @@ impl Explained {
     /// Excess length that sag and stretch may cause, metres. A straight cable of length L that is dragged across the floor
     /// sags by w² L³ / (24 T²), with w the friction of the floor per metre and T the pull of the reel: L / 24 times the
     /// square of the ratio of the pulls. A reel that is too weak leaves slack, which does not pull.
-    fn sag_m(self) -> f64 {
+    pub(super) fn sag_m(self) -> f64 {
         let dragged = SAG_FACTOR / 24.0 * self.pull_ratio.clamp(0.0, 1.0).powi(2);
         self.length_m * SAG_SHARE.max(dragged)
     }
@@ -88,6 +88,16 @@ impl Payout {
     /// The larger of the measured and the expected length, metres.
     pub(super) fn at_least_m(&self, explained_m: f64) -> f64 {
         self.measured_m.map_or(explained_m, |out_m| out_m.max(explained_m))
+    }
+
+    /// Whether the length off the reel is as expected.
+    pub(super) fn is_expected(&self) -> bool {
+        self.beyond_s == 0.0
+    }
+
+    /// What is out beyond the expected length is slack, not caught.
+    pub(super) fn explain(&mut self) {
+        self.beyond_s = 0.0;
     }
 
     /// Whether the cable counts as caught.

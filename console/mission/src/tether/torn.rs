@@ -38,6 +38,9 @@ pub(super) struct Found {
 pub(super) struct Torn {
     /// How long cable has been missing, seconds.
     missing_s: f64,
+    /// Length off the reel at the last reading, and what the reel has taken up while cable was missing, metres.
+    out_m: f64,
+    drawn_m: f64,
     /// The lengths when the cable was found torn.
     found: Option<Found>,
 }
@@ -60,10 +63,24 @@ impl Torn {
             (None, Some(straight_m)) => (straight_m, MISSING_BY_ENCODER_S),
             _ => (0.0, MISSING_S),
         };
+        let was_missing = self.is_missing();
         self.missing_s = if needed_m - out_m > MISSING_M { self.missing_s + passed_s } else { 0.0 };
+        let drawn_m = (self.out_m - out_m).max(0.0);
+        self.drawn_m = if was_missing { self.drawn_m + drawn_m } else { 0.0 };
+        self.out_m = out_m;
         if self.missing_s > after_s {
             self.found.get_or_insert(Found { out_m, needed_m, by_encoder_alone: pull_n.is_none() });
         }
+    }
+
+    /// Whether cable is missing, or has been found torn: the length off the reel says nothing about the cable at the robot.
+    pub(super) fn is_missing(&self) -> bool {
+        self.missing_s > 0.0 || self.found.is_some()
+    }
+
+    /// What the reel has drawn in of its piece, metres, as far as it was seen.
+    pub(super) fn drawn_m(&self) -> f64 {
+        self.drawn_m
     }
 
     /// The lengths when the cable was found torn; `None` for a whole cable.
@@ -111,6 +128,18 @@ mod tests {
         assert_eq!(torn.found(), found);
         torn.take(&loose, Some(least(0.0, None)), None, 2.0);
         assert_eq!(torn.found(), found);
+    }
+
+    #[test]
+    fn what_the_reel_draws_in_of_its_piece_is_added_up() {
+        let mut torn = Torn::default();
+        for (out_m, drawn_m) in [(5.0, 0.0), (3.0, 0.0), (2.9, 0.1), (2.7, 0.3), (2.7, 0.3), (0.0, 3.0)] {
+            let readings =
+                Readings { paid_out_m: Some(out_m), reel_pull_n: Some(0.0), ..Readings::default() };
+            torn.take(&readings, Some(least(5.0, None)), None, 0.6);
+            assert!((torn.drawn_m() - drawn_m).abs() < 1e-9, "{out_m}: {}", torn.drawn_m());
+        }
+        assert!(torn.found().is_some());
     }
 
     #[test]

@@ -210,6 +210,12 @@ impl Run {
         self.tether.as_ref().is_some_and(|tether| tether.is_broken)
     }
 
+    /// Whether the tether is slack: the alarm is open.
+    pub fn is_tether_slack(&self) -> bool {
+        let is_slack = |cause: &Cause| matches!(cause, Cause::Tether(word) if word == "slack");
+        self.alarms.list().iter().any(|alarm| is_slack(&alarm.cause) && alarm.is_active())
+    }
+
     /// Whether the hull is in a no-go zone.
     pub fn is_in_zone(&self) -> bool {
         self.alarms.list().iter().any(|alarm| matches!(alarm.cause, Cause::Zone(_)) && alarm.is_active())

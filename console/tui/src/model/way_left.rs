@@ -11,10 +11,10 @@ impl Run {
         Some(here.map_or(way.length_m, |here| left_m(&way.path, here)))
     }
 
-    /// Remaining mission time of the way back at the robot's full speed, seconds; `None` unless the robot is driving
-    /// back.
+    /// Remaining mission time of the way back at its highest speed, seconds; `None` unless the robot is driving back.
     pub(super) fn way_left_s(&self) -> Option<f64> {
-        let speed = self.about.as_ref()?.mission.limits.v_max_m_per_s;
+        let speed =
+            self.way_back.as_ref()?.fastest_m_per_s(self.about.as_ref()?.mission.limits.v_max_m_per_s);
         self.way_left_m().filter(|_| speed > 0.0).map(|left_m| left_m / speed)
     }
 }

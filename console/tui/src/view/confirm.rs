@@ -111,6 +111,10 @@ const IN_ZONE: &str = "The HULL IS IN A NO-GO ZONE: the robot drives in the zone
 const TETHER_BROKEN: &str = "The TETHER IS BROKEN: its rest lies on the floor, and the robot may drive over it. Safer: <cancel>, \
                              then fetch the robot by hand, or <return> drives back beside the tether.";
 
+/// The warning before a robot with a slack tether takes up its task again.
+const TETHER_SLACK: &str = "The TETHER IS SLACK: if its reel does not work, the robot may drive over it. Safer: <cancel>, check \
+                            the reel, or <return> drives back beside the tether.";
+
 /// The question whether to run a plan without a certificate, with the reason for which it was refused.
 fn uncertified(phase: &Phase) -> Vec<String> {
     let question = "Run uncertified plan? <accept>: run, <cancel>: stay held.".into();
@@ -145,9 +149,10 @@ fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
             let question = "Resume? The robot will move. <accept>: resume, <cancel>: cancel.".into();
             let in_zone = model.live.run.is_in_zone().then(|| IN_ZONE.to_owned());
             let torn = model.live.run.is_tether_broken().then(|| TETHER_BROKEN.to_owned());
+            let slack = model.live.run.is_tether_slack().then(|| TETHER_SLACK.to_owned());
             let speed = model.live.speed;
             let fast = (speed != Speed::Times(1.0)).then(|| format!("Speed {}.", text::speed(speed)));
-            let first = std::iter::once(question).chain(fast).chain(torn).chain(in_zone);
+            let first = std::iter::once(question).chain(fast).chain(torn.or(slack)).chain(in_zone);
             first.chain([moves(model)]).chain(continues(model)).collect()
         }
         Overlay::Confirm(Ask::FlyUncertified) => uncertified(model.live.run.phase()),

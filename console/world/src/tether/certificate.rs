@@ -1,6 +1,6 @@
 //! The certificate of a path.
 
-use super::pull::Pull;
+use super::{own_gap::OwnGap, pull::Pull};
 use serde::{Deserialize, Serialize};
 
 /// The results of certifying a path.
@@ -37,6 +37,10 @@ pub struct Certificate {
     /// The pull that the path needs; `None` if it was not checked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pull: Option<Pull>,
+    /// The least distance between the hull and its own taut cable on the way in; `None` if the scenario does not describe the
+    /// reel, or if the cable bends nowhere on the way in.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub own_gap: Option<OwnGap>,
 }
 
 impl Certificate {

@@ -7,6 +7,7 @@ use super::{
     clearance::Clearance,
     cuts,
     ground::Ground,
+    own_gap::OwnGap,
     reasons::Reasons,
     replay::Replay,
     sealed_region::{SealedRegions, sealed_regions},
@@ -57,6 +58,7 @@ pub fn certify_on(ground: &Ground, case: &Case<'_>) -> Result<Certificate, Tethe
         cut_crossings: cuts::crossings(case.path, case.cuts),
         sealed_m2: sealed.map_or(0.0, |SealedRegions { area_m2, .. }| area_m2),
         pull: replay.pull(),
+        own_gap: if case.pull.is_some() { OwnGap::on(case, ground)? } else { None },
         ..Certificate::default()
     };
     let reasons = Reasons { case, replay: &replay, left: &left, clearance: &clearance, sealed };

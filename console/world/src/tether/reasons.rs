@@ -99,7 +99,8 @@ impl Reasons<'_> {
         let weak_robot = |limit_n: f64| {
             let [needed, limit] = beside_limit(pull.robot_needed_n, limit_n, 1);
             format!(
-                "the robot must pull {needed} N at {} to draw out its tether, but can pull {limit} N",
+                "the robot must pull {needed} N at {} to draw out its tether, but can pull {limit} N: use a reel that pulls \
+                 less, a lighter tether, a stronger robot, another anchor or another planner",
                 place(pull.robot_at)
             )
         };

@@ -2,7 +2,7 @@
 
 use super::super::known::Known;
 use crate::{
-    tether::Tether,
+    tether::{Clearance, Tether},
     way_back::{Home, WayBack},
 };
 use world::{Obstacle, ObstacleId, Point, World, ZoneKind, polyline, shortest::NoWay};
@@ -19,9 +19,10 @@ impl Known {
     /// # Errors
     /// The reason why no way was found, as a sentence.
     pub(in crate::engine) fn way_back(&self) -> Result<WayBack, String> {
-        let (to, path, slack_m) = match &self.tether {
+        let (to, path, slack_m) = match self.resting.as_ref().or(self.tether.as_ref()) {
             Some(tether) if tether.is_left_lying() => {
-                (Home::Anchor, self.way_beside(tether)?, Some(tether.excess_m()))
+                let way = self.rest_of_way_beside(tether).map_or_else(|| self.way_beside(tether), Ok);
+                (Home::Anchor, way?, Some(tether.excess_m()))
             }
             Some(tether) => (Home::Anchor, self.way_along(tether)?, None),
             None => (Home::Start, self.shortest_way(self.config.start.position)?, None),
@@ -29,6 +30,14 @@ impl Known {
         let path = self.without_narrow_end(path);
         let clearance_m = self.hull_clearance_m(&path);
         Ok(WayBack { to, length_m: polyline::length_m(&path), clearance_m, path, slack_m })
+    }
+
+    /// The rest of the way beside the tether that was accepted, if the robot was stopped on it and it is still right.
+    fn rest_of_way_beside(&self, tether: &Tether) -> Option<Vec<Point>> {
+        let back = self.back.as_ref().filter(|back| back.is_beside)?;
+        let is_right = tether.beside_lying() == Some(Clearance::Free) && self.is_way_back_free();
+        let rest = self.led_from_here(back.follower.remaining().to_vec());
+        (is_right && tether.is_clear(&rest, self.chart.world())).then_some(rest)
     }
 
     /// The way beside a tether that lies on the floor.
@@ -40,14 +49,19 @@ impl Known {
         let beside =
             |room_m: f64| tether.way_beside(&fenced, room_m).filter(|way| self.is_free_from_here(way));
         self.widest(beside).ok_or_else(|| {
-            let cause = if tether.torn().is_some() {
-                "the tether is broken and lies on the floor"
+            let (cause, remedy) = if tether.torn().is_some() {
+                ("the tether is broken and lies on the floor", "")
+            } else if tether.is_only_weak() {
+                (
+                    "the reel is too weak for the tether that is out, and may draw it across the floor at any moment",
+                    ", or take the tether up by hand at the reel while the robot stands",
+                )
             } else {
-                "the reel does not take the tether up"
+                ("the reel does not take the tether up", ", or repair the reel")
             };
             format!(
                 "{cause}, and the hull does not fit beside the tether all the way to the anchor; end the mission here and \
-                 fetch the robot by hand, or repair the reel"
+                 fetch the robot by hand{remedy}"
             )
         })
     }

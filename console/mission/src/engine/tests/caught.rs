@@ -13,7 +13,7 @@ use world::{Shape, tether};
 /// A small column between two lanes.
 const UNSEEN: Shape = Shape::Disc { center: Point::new(0.0, 2.05), radius_m: 0.05 };
 
-fn snags(flight: &Flight) -> Vec<String> {
+pub(super) fn snags(flight: &Flight) -> Vec<String> {
     let snag = |event: &Event| match &event.kind {
         EventKind::TetherAlarmRaised { alarm: alarm @ TetherAlarm::Snag { .. }, reached: true } => {
             Some(alarm.to_string())
@@ -298,7 +298,7 @@ fn a_torn_cable_ends_a_mission_without_an_operator() {
 
 /// A mission whose reel stops taking the cable up after 30 % of the floor, until the slack rule holds the robot; with the
 /// length off the reel, and the place where the cable last pulled.
-fn slack() -> (Flight, f64, Point) {
+pub(super) fn slack() -> (Flight, f64, Point) {
     let anchor = covering().start.position;
     let limits = tether::Limits { reel_length_m: 50.0, wrap_max_rad: 50.0, wrap_total_max_rad: 50.0 };
     let config = TetherConfig { anchor, limits, friction: 0.3, reel: None, allow_uncertified: false };
@@ -327,7 +327,7 @@ fn slack() -> (Flight, f64, Point) {
 }
 
 /// Goes on with a reel that takes nothing up, until the robot stops; `drawn_m` more metres come off the reel.
-fn go_on_with_a_dead_reel(flight: &mut Flight, out_m: f64, drawn_m: f64) {
+pub(super) fn go_on_with_a_dead_reel(flight: &mut Flight, out_m: f64, drawn_m: f64) {
     for _ in 0..4000 {
         let taut_m = flight.reel.as_ref().unwrap().length_m();
         flight.caught_m = (out_m + drawn_m - taut_m).max(0.0);
@@ -339,7 +339,7 @@ fn go_on_with_a_dead_reel(flight: &mut Flight, out_m: f64, drawn_m: f64) {
     }
 }
 
-fn way_back(flight: &Flight) -> Vec<Point> {
+pub(super) fn way_back(flight: &Flight) -> Vec<Point> {
     let way = flight.events.iter().rev().find_map(|event| match &event.kind {
         EventKind::ReturnBegan { way } => Some(way.path.clone()),
         _ => None,

@@ -35,8 +35,11 @@ fn certificate_text(planner: &str, refused: bool, certificate: &Certificate) -> 
             let left =
                 certificate.end_length_m.map_or_else(String::new, |m| format!(", {m:.1} m out after return"));
             let pull = certificate.pull.map_or_else(String::new, |pull| format!(", pull {}", pull.text()));
+            let own_gap = certificate.own_gap.map_or_else(String::new, |own_gap| {
+                format!(", own tether no nearer than {}", own_gap.text())
+            });
             let length_m = certificate.tether_length_max_m;
-            let figures = format!("at most {length_m:.1} m of tether out{left}{pull}");
+            let figures = format!("at most {length_m:.1} m of tether out{left}{pull}{own_gap}");
             let whole = [figures].into_iter().chain(certificate.warnings.iter().cloned());
             format!("plan of {planner} certified: {}", whole.collect::<Vec<_>>().join("; "))
         }

@@ -136,7 +136,7 @@ fn tether_table(tether: &TetherPart) -> Table {
         table.row(vec![name.into(), "".into(), "".into(), "".into(), "".into(), "yes".into()]);
     }
     if let Some(times) = truth.and_then(|truth| truth.over_own) {
-        let name = "Times that the robot drove over its own tether";
+        let name = "Times that the hull came over its own tether";
         table.row(vec![name.into(), "".into(), "".into(), "".into(), "".into(), times.to_string().into()]);
     }
     table

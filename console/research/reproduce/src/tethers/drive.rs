@@ -5,7 +5,7 @@ use cable::{Chain, Law, Surfaces};
 use mission::{
     TetherConfig,
     event::{EventKind, MeasuredPull, TetherAlarm},
-    tether::Tether,
+    tether::{Clearance, Tether},
 };
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -26,6 +26,10 @@ const REST_S: f64 = 30.0;
 const SPARE_M: f64 = 20.0;
 /// Farthest way back along the driven path to make a slack cable taut, metres.
 const BACK_M: f64 = 3.0;
+/// Speed of the mission beside a cable on the floor, metres per second.
+const BESIDE_M_PER_S: f64 = 0.1;
+/// Most orders to drive home after one hold.
+const MOST_ORDERS: usize = 6;
 
 /// What became of the cable on a drive.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -43,16 +47,26 @@ pub(super) struct Drive {
     /// Whether the cable was taut again after the robot had gone back along its path, without driving over the cable;
     /// `None` if it was not held.
     pub is_freed: Option<bool>,
-    /// How often the robot would have driven onto its own cable on the way home after the hold, and on the taut line; `None` if
-    /// it was not held.
+    /// How often the robot drove onto its own cable on the way home after the hold, and how often it would have on the taut line;
+    /// `None` if it was not held, or if the order was refused before the robot moved.
     pub times_over_home: Option<(usize, usize)>,
-    /// Whether the mission refused the order to drive home after the hold, because the hull did not fit beside the cable; `None`
-    /// if the robot was not held.
-    pub is_home_refused: Option<bool>,
+    /// How the way home after the hold ended; `None` if the robot was not held.
+    pub home: Option<Home>,
     /// How often the cable counted as caught.
     pub snags: usize,
     /// Length of cable beyond the taut line after the return, metres.
     pub end_excess_m: f64,
+}
+
+/// How the orders to drive home ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Home {
+    /// The robot came home.
+    There,
+    /// The mission refused the first order, because the hull would not have been clear of the cable.
+    Refused,
+    /// The robot was held on the way, and further orders were refused or did not lead home.
+    Held,
 }
 
 /// Drives a path with a cable on a reel whose pull is the needed one divided by a ratio, and that stops taking cable up
@@ -83,11 +97,10 @@ pub(super) fn drive(tank: &Tank, path: &[Point], ratio: f64, stops_at: Option<f6
         if !drive.is_held && run.is_raised(|alarm| matches!(alarm, TetherAlarm::Slack { .. })) {
             drive.is_held = true;
             drive.is_freed = Some(run.clone().go_back_until_taut(&way[..=index]));
-            let home = run.rules.way_beside(&world, HULL_M);
-            drive.is_home_refused = Some(home.is_none());
-            let home = home.zip(run.rules.return_path(&world, HULL_M));
-            drive.times_over_home =
-                home.map(|(home, on_line)| (run.times_over_on(&home), run.times_over_on(&on_line)));
+            let on_line = run.rules.return_path(&world, HULL_M).map_or(0, |way| run.times_over_on(&way));
+            let (home, times) = run.clone().drive_home();
+            drive.home = Some(home);
+            drive.times_over_home = (home != Home::Refused).then_some((times, on_line));
         }
     }
     let end = way.last().copied().unwrap_or(tank.anchor);
@@ -196,6 +209,50 @@ impl<'a> Run<'a> {
             was_over = is_over;
         }
         times
+    }
+
+    /// Drives home by orders, as the mission does: beside the cable slowly, until the robot is there or held. A held robot waits
+    /// until the cable rests, and gets the next order. Returns how often the robot came onto its own cable.
+    fn drive_home(mut self) -> (Home, usize) {
+        let (mut times, mut was_over) = (0, false);
+        let mut count = |is_over: bool| {
+            times += usize::from(is_over && !was_over);
+            was_over = is_over;
+        };
+        for order in 0..MOST_ORDERS {
+            let is_beside = self.rules.is_left_lying();
+            let way = if is_beside {
+                self.rules.way_beside(self.world, HULL_M)
+            } else {
+                self.rules.way_home(self.world, HULL_M)
+            };
+            let Some(way) = way else {
+                return (if order == 0 { Home::Refused } else { Home::Held }, times);
+            };
+            let speed_m_per_s = if is_beside {
+                self.rules.leave_lying();
+                BESIDE_M_PER_S
+            } else {
+                SPEED_M_PER_S
+            };
+            let mut is_held = false;
+            for at in polyline::resampled(&way, speed_m_per_s * TICK_S) {
+                count(self.step(at));
+                let trouble = self.rules.beside_lying().and_then(Clearance::trouble);
+                is_held = trouble.is_some()
+                    || (!is_beside && self.is_raised(|alarm| matches!(alarm, TetherAlarm::Slack { .. })));
+                if is_held {
+                    break;
+                }
+            }
+            if !is_held {
+                return (Home::There, times);
+            }
+            let here = self.rules.tip();
+            (0..(REST_S / TICK_S) as usize).for_each(|_| count(self.step(here)));
+            self.rules.forget_lying();
+        }
+        (Home::Held, times)
     }
 
     /// Whether the last tick raised such an alarm.

@@ -1,6 +1,10 @@
 //! Rows of one planner at one ratio.
 
-use super::{Measured, drive::Drive, reeling::Reeling};
+use super::{
+    Measured,
+    drive::{Drive, Home},
+    reeling::Reeling,
+};
 use crate::study::{Block, Row, Sample};
 
 /// Length of cable beyond the taut line up to which the certificate holds: metres, or a share of the longest taut line if
@@ -53,10 +57,11 @@ fn of_drives(block: &Block<'_>, drives: &[(u64, &Drive)]) -> Vec<Row> {
         over.iter().map(|drive| drive.is_held && drive.times_over_before_hold == 0).collect(),
     ));
     rows.push(rate("freed_rate", drives.iter().filter_map(|(_, drive)| drive.is_freed).collect()));
-    rows.push(rate(
-        "home_refused_rate",
-        drives.iter().filter_map(|(_, drive)| drive.is_home_refused).collect(),
-    ));
+    let ends =
+        |wanted: Home| drives.iter().filter_map(|(_, drive)| drive.home).map(|home| home == wanted).collect();
+    rows.push(rate("home_refused_rate", ends(Home::Refused)));
+    rows.push(rate("home_held_rate", ends(Home::Held)));
+    rows.push(rate("home_rate", ends(Home::There)));
     let homes: Vec<(u64, &(usize, usize))> =
         drives.iter().filter_map(|(seed, drive)| Some((*seed, drive.times_over_home.as_ref()?))).collect();
     if !homes.is_empty() {

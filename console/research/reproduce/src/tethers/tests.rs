@@ -1,6 +1,6 @@
 //! The study on paths that need no planner.
 
-use super::*;
+use super::{drive::Home, *};
 use crate::study::Block;
 use trials::tanks::Known;
 use world::Point;
@@ -39,16 +39,16 @@ fn a_strong_reel_keeps_the_certificate_and_a_weak_one_is_held_before_the_robot_m
 #[test]
 fn the_way_home_after_slack_leads_beside_the_cable_that_lies_on_the_floor() {
     let weak = drive(&tank(), &path(), 1.5, None);
-    let Some((home, on_line)) = weak.times_over_home else { panic!("not held: {weak:?}") };
-    assert!(home == 0 && on_line > 0, "{weak:?}");
+    let Some((times, on_line)) = weak.times_over_home else { panic!("not held: {weak:?}") };
+    assert!(times == 0 && on_line > 0 && weak.home == Some(Home::There), "{weak:?}");
 }
 
 #[test]
 fn with_a_reel_that_has_stopped_the_robot_drives_home_beside_its_cable() {
     for share in [0.3, 0.45, 0.6, 0.75] {
         let dead = drive(&tank(), &path(), 0.5, Some(share));
-        let Some((home, _)) = dead.times_over_home else { panic!("refused or not held: {share} {dead:?}") };
-        assert!(dead.is_held && home == 0, "{share} {dead:?}");
+        let Some((times, _)) = dead.times_over_home else { panic!("refused or not held: {share} {dead:?}") };
+        assert!(dead.is_held && times == 0 && dead.home == Some(Home::There), "{share} {dead:?}");
     }
 }
 

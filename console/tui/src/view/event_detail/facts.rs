@@ -420,6 +420,7 @@ fn certified(planner: &str, refused: bool, certificate: &Certificate) -> Vec<Fie
     facts.extend(certificate.reasons.iter().map(|reason| ("reason", reason.clone())));
     facts.extend(certificate.warnings.iter().map(|warning| ("warning", warning.clone())));
     facts.push(("pull", certificate.pull_text().replacen("pull ", "", 1)));
+    facts.extend(certificate.own_gap.map(|own_gap| ("own gap", own_gap.text())));
     facts.push(("tether", format!("at most {:.1} m out{end}", certificate.tether_length_max_m)));
     facts.push(("wrap", format!("at most {:.0}° on one obstacle, {:.0}° in total", wraps.0, wraps.1)));
     let (collisions, cuts) = (certificate.collisions, certificate.cut_crossings);

@@ -174,7 +174,9 @@ fn held_in_zone(head: Head, by: &HoldReason) -> Vec<String> {
 /// A hold of a robot whose tether is torn, whatever the reason for the hold.
 fn held_by_break(head: Head, by: &HoldReason) -> Vec<String> {
     let state = match by {
-        HoldReason::Tether { .. } => head.with(": tether broken."),
+        HoldReason::Tether { message } if message.starts_with("tether broken") => {
+            head.with(": tether broken.")
+        }
         by => head.with(&format!("{}; tether broken.", reason(by))),
     };
     vec![state, "<end>: end mission.".into(), "<resume>: resume.".into(), "<return>: drive back.".into()]
@@ -196,6 +198,9 @@ fn held_for_good(head: Head, by: &HoldReason) -> Vec<String> {
         }
         HoldReason::ZoneBreached { .. } => {
             (": hull has left the zone".into(), &[RESUME, "<end>: end mission."])
+        }
+        HoldReason::Tether { message } if message.starts_with("reel does not take") => {
+            (reason(by), &[RESUME, "<return>: drive back.", "<end>: end mission."])
         }
         HoldReason::Tether { .. } | HoldReason::Guard { .. } => {
             (reason(by), &[RESUME, "<end>: end mission."])
