@@ -397,6 +397,8 @@ fn a_plan_is_not_certified_and_has_no_figures_of_a_tether_that_is_torn() {
     assert!(shown.contains("tether TORN") && !shown.contains("tether certified"), "{shown}");
     assert!(shown.lines().any(|line| line.contains("wrap") && line.contains("torn")), "{shown}");
     assert!(shown.contains("HELD by operator; tether broken; robot at "), "{shown}");
+    let check = screen.model.checks().into_iter().find(|check| check.what == "tether");
+    assert!(check.is_some_and(|check| check.found.starts_with("TORN")), "{shown}");
     screen.type_text("3");
     let shown = text(&drawn(&screen.model, RICH, (120, 36)));
     assert!(shown.contains("torn        12.6 m off the reel (first 1.6 m)"), "{shown}");
@@ -430,4 +432,16 @@ fn a_blocked_return_path_is_named_by_the_pane_and_the_alarm_at_every_size() {
         let shown = text(&drawn(&screen.model, RICH, size));
         assert!(shown.contains("return path BLOCKED"), "{size:?}\n{shown}");
     }
+}
+
+#[test]
+fn enter_in_the_pane_of_the_stations_begins_the_command_that_excludes_one() {
+    let mut screen = Screen::running();
+    screen.type_text("3");
+    screen.model.ui.pane = tui::model::Pane::Stations;
+    assert_eq!(screen.press([tui::Key::Enter]), []);
+    let tui::model::Overlay::Commands(palette) = &screen.model.ui.overlay else {
+        panic!("no command line is open")
+    };
+    assert_eq!(palette.line.text(), "exclude ");
 }
