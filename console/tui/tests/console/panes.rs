@@ -433,15 +433,3 @@ fn a_blocked_return_path_is_named_by_the_pane_and_the_alarm_at_every_size() {
         assert!(shown.contains("return path BLOCKED"), "{size:?}\n{shown}");
     }
 }
-
-#[test]
-fn enter_in_the_pane_of_the_stations_begins_the_command_that_excludes_one() {
-    let mut screen = Screen::running();
-    screen.type_text("3");
-    screen.model.ui.pane = tui::model::Pane::Stations;
-    assert_eq!(screen.press([tui::Key::Enter]), []);
-    let tui::model::Overlay::Commands(palette) = &screen.model.ui.overlay else {
-        panic!("no command line is open")
-    };
-    assert_eq!(palette.line.text(), "exclude ");
-}
