@@ -76,7 +76,7 @@ mod tests {
         .unwrap()
     }
 
-    fn found(kinds: Vec<EventKind>) -> Option<EventKind> {
+    fn found(kinds: &[EventKind]) -> Option<EventKind> {
         let mut start = StartPlan::default();
         kinds.iter().find_map(|kind| start.plan_of(kind))
     }
@@ -84,8 +84,8 @@ mod tests {
     #[test]
     fn the_plan_of_the_start_is_the_last_one_before_it_or_the_first_one_after_it() {
         let start = || EventKind::Ordered { order: Order::Start };
-        assert_eq!(found(vec![planned(1.0), planned(2.0), start(), planned(3.0)]), Some(planned(2.0)));
-        assert_eq!(found(vec![start(), planned(3.0), planned(4.0)]), Some(planned(3.0)));
-        assert_eq!(found(vec![planned(1.0)]), None, "not started");
+        assert_eq!(found(&[planned(1.0), planned(2.0), start(), planned(3.0)]), Some(planned(2.0)));
+        assert_eq!(found(&[start(), planned(3.0), planned(4.0)]), Some(planned(3.0)));
+        assert_eq!(found(&[planned(1.0)]), None, "not started");
     }
 }

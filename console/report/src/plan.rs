@@ -243,11 +243,16 @@ fn left_out(left_out: &LeftOut) -> String {
     if n == 0 {
         return String::new();
     }
-    let areas: String =
+    let areas: Vec<String> =
         left_out.areas.iter().take(MOST_AREAS).map(|area| format!("          {area}\n")).collect();
     let more = n.checked_sub(MOST_AREAS + 1).map(|more| format!("          and {} more\n", more + 1));
     let plural = if n == 1 { "" } else { "s" };
-    format!("left out  {:.2} m² in {n} area{plural}\n{areas}{}", left_out.area_m2(), more.unwrap_or_default())
+    format!(
+        "left out  {:.2} m² in {n} area{plural}\n{}{}",
+        left_out.area_m2(),
+        areas.concat(),
+        more.unwrap_or_default()
+    )
 }
 
 /// The floor as text.

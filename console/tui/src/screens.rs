@@ -7,7 +7,7 @@ use crate::actions::context::Context::{self, Cursor, Map, On, Pan, Replay, Rows}
 use crate::actions::{Action, ActionId, action};
 use crate::keys::Key;
 use crate::model::{Model, Pane, ui::Arrangement};
-use crate::update::{Effect, act, alarms, events, go, offer, place, review, stations};
+use crate::update::{Effect, act, alarms, events, go, offer, place, review};
 use crate::view::{self, look::Look, scroll::Extent};
 use ratatui::{Frame, layout::Rect};
 use serde::{Deserialize, Serialize};
@@ -109,7 +109,7 @@ const ROWS: &[Row] = &[
         ..row(shows(Screen::Plan, "plan", "Screen 2: the plan before the start", &[Key::Char('2')]).when(offer::is_open), "Plan",
             &[&[On(Screen::Plan), Map, Pan], &[On(Screen::Plan), Map, Rows], &[On(Screen::Plan), Map], &[Map, Pan, Cursor]],
             view::plan::draw) },
-    Row { first: ActionId::Hold, active: of_mission, opens: opens_on_mission, enter: enter_on_mission,
+    Row { first: ActionId::Hold, active: of_mission, opens: |m| (m.ui.pane == Pane::Events).then_some("open"), enter: events::enter,
         select: |m, by| m.ui.events.select(by),
         ..row(shows(Screen::Mission, "mission", "Screen 3: the mission", &[Key::Char('3')]).when(offer::is_open), "Mission",
             &[&[On(Screen::Mission), Map, Pan], &[On(Screen::Mission), Map, Rows], &[On(Screen::Mission), Map],
@@ -136,19 +136,6 @@ const ROWS: &[Row] = &[
         ..row(shows(Screen::Plugins, "plugins", "Screen 8: plugins and their planners", &[Key::Char('8')]), "Plugins",
             &[&[On(Screen::Plugins), Rows]], view::plugins::draw) },
 ];
-
-/// The label of Enter on the mission screen: an event is opened, and at the stations one of them can be excluded.
-fn opens_on_mission(model: &Model) -> Option<&'static str> {
-    match model.ui.pane {
-        Pane::Events => Some("open"),
-        Pane::Stations => stations::can(model, ActionId::Exclude).ok().map(|()| "exclude"),
-        _ => None,
-    }
-}
-
-fn enter_on_mission(model: &mut Model) -> Vec<Effect> {
-    if model.ui.pane == Pane::Stations { stations::begin(model) } else { events::enter(model) }
-}
 
 /// The index of the plan screen's contexts: by pane or cursor.
 fn of_plan(model: &Model) -> usize {

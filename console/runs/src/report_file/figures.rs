@@ -75,22 +75,19 @@ fn merge_causes(causes: &mut Vec<Cause<MissReason>>) {
     let is_beside = |cause: &Cause<MissReason>| cause.reason == MissReason::NoLaneBeside;
     let Some(index) = causes.iter().position(is_beside) else { return };
     let beside = causes.remove(index);
-    match causes.iter_mut().find(|cause| cause.reason == MissReason::Clearance) {
-        Some(cause) => {
-            cause.area_m2 += beside.area_m2;
-            if let (Some(own), Some(other)) = (&mut cause.measure, beside.measure) {
-                let most_m = own.to_m.into_iter().chain(other.to_m).reduce(f64::max);
-                if other.value_m < own.value_m {
-                    *own = other;
-                }
-                own.to_m = most_m;
+    if let Some(cause) = causes.iter_mut().find(|cause| cause.reason == MissReason::Clearance) {
+        cause.area_m2 += beside.area_m2;
+        if let (Some(own), Some(other)) = (&mut cause.measure, beside.measure) {
+            let most_m = own.to_m.into_iter().chain(other.to_m).reduce(f64::max);
+            if other.value_m < own.value_m {
+                *own = other;
             }
-            cause.text = cause.reason.sentence(cause.measure.as_ref());
+            own.to_m = most_m;
         }
-        None => {
-            let text = MissReason::Clearance.sentence(beside.measure.as_ref());
-            causes.push(Cause { reason: MissReason::Clearance, text, ..beside });
-        }
+        cause.text = cause.reason.sentence(cause.measure.as_ref());
+    } else {
+        let text = MissReason::Clearance.sentence(beside.measure.as_ref());
+        causes.push(Cause { reason: MissReason::Clearance, text, ..beside });
     }
     causes.sort_by(|a, b| b.area_m2.total_cmp(&a.area_m2).then(a.reason.cmp(&b.reason)));
 }

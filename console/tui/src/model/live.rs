@@ -216,6 +216,14 @@ impl Live {
         (*self.run.phase() != Phase::Waiting).then_some(left_out)
     }
 
+    /// Takes the figures that a plan promises.
+    pub(crate) fn promises(&mut self, ask: Option<AskId>, estimate: Estimate) {
+        let plan = self.run.planning.plan.as_ref().filter(|plan| plan.ask == ask);
+        self.plans.lanes = plan.map_or(0, |plan| plan.lanes.len());
+        self.plans.planner = self.run.planner_id().map(ToOwned::to_owned);
+        self.plans.estimate = Some((ask, estimate));
+    }
+
     /// Takes the floor that a plan leaves out; the first of a mission under way is that of the start.
     pub(crate) fn leaves_out(&mut self, ask: Option<AskId>, left_out: LeftOut) {
         let is_first = *self.run.phase() == Phase::Waiting || self.plans.left_out.is_none();

@@ -191,6 +191,10 @@ impl Model {
     fn tether_check(&self) -> Option<Check> {
         let run = &self.live.run;
         let tether = run.about.as_ref()?.mission.tether.as_ref()?;
+        if run.is_tether_broken() {
+            let found = "TORN: the certificate of the plan does not apply".to_owned();
+            return Some(check("tether", CheckOutcome::Warning, found));
+        }
         Some(match run.tether.as_ref().and_then(|tether| tether.certified) {
             Some(true) => match run.tether.as_ref().and_then(|tether| tether.warnings.first()) {
                 Some(warning) => check("tether", CheckOutcome::Warning, format!("certified, but {warning}")),

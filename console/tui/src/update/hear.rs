@@ -51,12 +51,7 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
             return vec![Effect::Order(Order::Plan)];
         }
         RunMsg::Checked(found) => return preflight::checked(model, found),
-        RunMsg::Estimated(ask, estimate) => {
-            let plan = model.live.run.planning.plan.as_ref().filter(|plan| plan.ask == ask);
-            model.live.plans.lanes = plan.map_or(0, |plan| plan.lanes.len());
-            model.live.plans.planner = model.live.run.planner_id().map(ToOwned::to_owned);
-            model.live.plans.estimate = Some((ask, *estimate));
-        }
+        RunMsg::Estimated(ask, estimate) => model.live.promises(ask, *estimate),
         RunMsg::Promised(promise) => model.live.plans.promised_at_start(*promise),
         RunMsg::WayBack(way) => finish::found(model, way),
         RunMsg::ZoneCost(corners, cost) => zones::priced(model, &corners, cost),

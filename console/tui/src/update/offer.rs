@@ -4,7 +4,7 @@
 use super::go::{self, named_run};
 use super::look_only::{allowed, no_orders};
 use super::message::Effect;
-use super::{place, replay, stations};
+use super::{place, replay};
 use crate::actions::{ActionId, find};
 use crate::model::home::HomeList;
 use crate::model::ui::{Arrangement, Ask};
@@ -36,7 +36,6 @@ pub(super) fn why_nothing_opens(model: &Model) -> Option<String> {
         Screen::Home => go::why_not_open(model),
         Screen::Review => offered(model, ActionId::Replay).err(),
         Screen::Plan => Some(place::why_no_area(model).into()),
-        Screen::Mission if model.ui.pane == Pane::Stations => stations::can(model, ActionId::Exclude).err(),
         Screen::Mission => Some("nothing to open in this pane; <next-pane>: next pane, to the events".into()),
         _ => None,
     }

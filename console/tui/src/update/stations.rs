@@ -1,9 +1,7 @@
 //! The operator's actions on AE stations: excluding a station, using it again, making a simulated one fail.
 
 use super::command::Value;
-use super::message::Effect;
 use super::offer::{accepted, demand};
-use super::palette;
 use crate::actions::ActionId;
 use crate::model::Model;
 use mission::{Injection, Order, RangeFault};
@@ -23,11 +21,6 @@ pub(crate) fn can(model: &Model, id: ActionId) -> Result<(), String> {
         _ => Order::UseStation { station, used: true, by: None },
     };
     accepted(model, &order)
-}
-
-/// Opens the command line that excludes a station, with the stations to choose from.
-pub(crate) fn begin(model: &mut Model) -> Vec<Effect> {
-    palette::begin(model, ActionId::Exclude)
 }
 
 /// The order for a command about a station; `None` if a value is missing.

@@ -397,6 +397,8 @@ fn a_plan_is_not_certified_and_has_no_figures_of_a_tether_that_is_torn() {
     assert!(shown.contains("tether TORN") && !shown.contains("tether certified"), "{shown}");
     assert!(shown.lines().any(|line| line.contains("wrap") && line.contains("torn")), "{shown}");
     assert!(shown.contains("HELD by operator; tether broken; robot at "), "{shown}");
+    let check = screen.model.checks().into_iter().find(|check| check.what == "tether");
+    assert!(check.is_some_and(|check| check.found.starts_with("TORN")), "{shown}");
     screen.type_text("3");
     let shown = text(&drawn(&screen.model, RICH, (120, 36)));
     assert!(shown.contains("torn        12.6 m off the reel (first 1.6 m)"), "{shown}");

@@ -58,7 +58,8 @@ fn bad_in(look: &Look, bad: &[&Check], columns: usize, rows: usize) -> Vec<Line<
 
 /// The names of checks that passed, as a sentence in lines.
 fn names_of(checks: &[&Check], columns: usize) -> Vec<String> {
-    named(checks.iter().map(|check| check.what.clone()).collect(), columns)
+    let names: Vec<String> = checks.iter().map(|check| check.what.clone()).collect();
+    named(&names, columns)
 }
 
 /// The names that fit into a number of lines, with the number of the others.
@@ -66,13 +67,14 @@ fn names_in(checks: &[&Check], columns: usize, rows: usize) -> Vec<String> {
     let first = |n: usize| {
         let more = checks.len() - n;
         let more = (more > 0).then(|| format!("and {more} more"));
-        named(checks[..n].iter().map(|check| check.what.clone()).chain(more).collect(), columns)
+        let names: Vec<String> = checks[..n].iter().map(|check| check.what.clone()).chain(more).collect();
+        named(&names, columns)
     };
     (0..=checks.len()).rev().map(first).find(|lines| lines.len() <= rows).unwrap_or_default()
 }
 
-fn named(names: Vec<String>, columns: usize) -> Vec<String> {
-    let lines = text::wrap_items(&names, columns.saturating_sub(4), ", ").into_iter().enumerate();
+fn named(names: &[String], columns: usize) -> Vec<String> {
+    let lines = text::wrap_items(names, columns.saturating_sub(4), ", ").into_iter().enumerate();
     lines.map(|(index, line)| format!("{}{line}", if index == 0 { "ok: " } else { "" })).collect()
 }
 
