@@ -14,7 +14,7 @@ use super::{
 use crate::engine::side;
 use crate::{clock, outline, phase::Outcome};
 use live::{of_link, of_notice};
-use orders::{injection_text, note_text, order_text};
+use orders::order_text;
 use planners::{of_better_plan, of_planner, of_shadow};
 use positioning::{Exclusion, Integrity};
 use tether::of_tether;

@@ -3,7 +3,6 @@
 use super::station_text;
 use crate::{
     order::{Check, CheckOutcome, Injection, Note, Noted, Order, RangeFault},
-    outline,
     phase::StepTo,
 };
 use world::Station;
@@ -64,7 +63,7 @@ fn by_text(by: Option<&String>) -> String {
     by.map_or_else(String::new, |name| format!(" by {name}"))
 }
 
-pub(super) fn note_text(Note { what, by }: &Note) -> String {
+fn note_text(Note { what, by }: &Note) -> String {
     let by = by_text(by.as_ref());
     match what {
         Noted::Acknowledged { text, .. } => format!("alarm acknowledged{by}: {text}"),
@@ -76,10 +75,7 @@ pub(super) fn note_text(Note { what, by }: &Note) -> String {
     }
 }
 
-pub(super) fn injection_text(
-    Injection { station, fault, for_s, by }: &Injection,
-    stations: &[Station],
-) -> String {
+fn injection_text(Injection { station, fault, for_s, by }: &Injection, stations: &[Station]) -> String {
     let fault = match fault {
         RangeFault::Dead => "dead".to_owned(),
         RangeFault::Offset(metres) => format!("ranges {metres} m too long"),
