@@ -183,6 +183,7 @@ impl Mission {
         self.happened.extend(judged.map(EventKind::ChannelsJudged));
         let located = self.known.locator.take(input.readings, self.known.now_s());
         self.happened.extend(located);
+        self.note_last_pulses();
         self.happened.extend(self.known.take_pressure(input.readings.pressure_pa));
         self.known.take_scan(input.readings, input.age_s);
         let map_changed = self.look_around(input.readings);

@@ -84,7 +84,7 @@ impl Mission {
         let resumes = if only_by_order { Resumes::Never } else { resumes };
         self.happened.push(EventKind::Held { by: by.clone(), resumes });
         self.known.phase = Phase::Held(Hold { by, resumes });
-        self.known.leave_finish();
+        self.known.hold_finish();
         self.rules.time_limit.hold(self.known.now_s());
         self.driving.outdate_step();
         self.driving.drop_command(&mut self.happened);
@@ -109,6 +109,9 @@ impl Mission {
     pub(super) fn resume(&mut self, gait: Gait) {
         if gait != Gait::Back {
             self.leave_way_back();
+        }
+        if gait == Gait::Back || !self.known.task.is_done(self.known.position()) {
+            self.known.leave_finish();
         }
         self.driving.prepare = Prepare::No;
         self.known.survey.iter_mut().for_each(Surveying::leave_way);
@@ -146,6 +149,7 @@ impl Mission {
 
     pub(super) fn end(&mut self, outcome: Outcome, reason: String) {
         self.report_map();
+        self.report_missing_pulses();
         self.happened.ending = Some(EventKind::Ended { outcome, reason });
         self.known.phase = Phase::Ended(outcome);
         self.drop_preparing();

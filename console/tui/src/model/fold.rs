@@ -97,7 +97,10 @@ impl Run {
                 }
                 self.about.iter_mut().for_each(|about| about.world.zones.push(zone.clone()));
             }
-            EventKind::ReturnBegan { way } => self.way_back = Some(way.clone()),
+            EventKind::ReturnBegan { way } => {
+                self.way_back = Some(way.clone());
+                self.position.pulses_until_s = None;
+            }
             EventKind::ZoneBreached { zone, .. } => self.raise_as_logged(event, Cause::Zone(zone.clone())),
             EventKind::ZoneLeft { zone } => self.clear(&Cause::Zone(zone.clone())),
             EventKind::ObstacleMoved { id, obstacle } => self.moved(*id, obstacle),
@@ -137,7 +140,6 @@ impl Run {
             | EventKind::TetherAlarmCleared { .. }
             | EventKind::Certified { .. } => self.tethered(event),
             EventKind::Held { by, resumes } => {
-                self.position.pulses_until_s = None;
                 self.hold(event, &Hold { by: by.clone(), resumes: *resumes }, &mut change);
             }
             EventKind::Resumed => {

@@ -107,6 +107,9 @@ fn asked(model: &Model) -> Option<Vec<String>> {
 const IN_ZONE: &str = "The HULL IS IN A NO-GO ZONE: the robot drives in the zone and may get stuck there. Safer: <cancel>, then \
                        <return> drives back.";
 
+/// What a resumption leads to if the task is done.
+const ONLY_PULSES: &str = "The task is done: the robot stands still until the last pulse test has come.";
+
 /// The warning before a robot with a torn tether moves.
 const TETHER_BROKEN: &str = "The TETHER IS BROKEN: its rest lies on the floor, and the robot may drive over it. Safer: <cancel>, \
                              then fetch the robot by hand, or <return> drives back beside the tether.";
@@ -153,6 +156,9 @@ fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
             let speed = model.live.speed;
             let fast = (speed != Speed::Times(1.0)).then(|| format!("Speed {}.", text::speed(speed)));
             let first = std::iter::once(question).chain(fast).chain(torn.or(slack)).chain(in_zone);
+            if model.live.run.position.pulses_until_s.is_some() {
+                return first.chain([ONLY_PULSES.to_owned()]).collect();
+            }
             first.chain([moves(model)]).chain(continues(model)).collect()
         }
         Overlay::Confirm(Ask::FlyUncertified) => uncertified(model.live.run.phase()),

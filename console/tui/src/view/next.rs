@@ -277,7 +277,7 @@ fn idle(model: &Model) -> Clauses {
 }
 
 fn running(model: &Model) -> Clauses {
-    if model.live.run.phase().is_return() {
+    if model.live.run.phase().is_return() && model.live.run.position.pulses_until_s.is_none() {
         return (Role::Run, driving_back(model));
     }
     if model.live.run.position.lost {
@@ -312,15 +312,18 @@ fn running(model: &Model) -> Clauses {
     (role, doing.into_iter().chain(last.into_iter().flatten()).collect())
 }
 
+/// That the task is done and the robot waits for the last pulse test; `None` if it does not.
+fn awaiting_pulses(run: &Run) -> Option<Vec<String>> {
+    let until = text::clock(run.position.pulses_until_s?);
+    let waits = format!("The robot stands still for the last pulse test, until T+{until} at most.");
+    Some(vec!["Task done.".into(), waits])
+}
+
 /// What the robot does now: a better plan on offer, the way to the start of a new plan, or the next target.
 fn doing(model: &Model) -> Clauses {
     let run = &model.live.run;
-    if let Some(until_s) = run.position.pulses_until_s {
-        let waits = format!(
-            "The robot stands still for the last pulse test, until T+{} at most.",
-            text::clock(until_s)
-        );
-        return (Role::Title, vec!["Task done.".into(), waits]);
+    if let Some(waits) = awaiting_pulses(run) {
+        return (Role::Title, waits);
     }
     if let Some(offer) = &run.planning.offer {
         return (Role::Watch, better_plan(offer));

@@ -62,18 +62,40 @@ fn without_pulses_the_mission_ends_and_says_so_at_the_latest_at_its_time_limit()
 }
 
 #[test]
-fn a_hold_breaks_the_wait_off_and_the_resumption_begins_it_again() {
+fn a_hold_interrupts_the_wait_and_the_resumption_begins_it_again() {
     let mut flight = with_pulses(5.0, 1000.0);
     fly_to_the_wait(&mut flight);
     flight.tick(&[Order::Hold]);
     flight.fly(400);
     assert_eq!((flight.ended(), flight.held_by()), (None, Some(&HoldReason::Operator)));
-    flight.pulse = true;
-    flight.tick(&[]);
     let resumed = flight.tick(&[Order::Resume]);
     assert!(resumed.iter().any(|kind| matches!(kind, EventKind::PulsesAwaited { .. })), "{resumed:?}");
     flight.pulse = true;
     flight.tick(&[]);
     assert_eq!(flight.ended(), Some(Outcome::Complete));
-    assert_eq!(phases(&flight), [PulsePhase::Before, PulsePhase::Held, PulsePhase::After]);
+    assert_eq!(phases(&flight), [PulsePhase::Before, PulsePhase::After]);
+}
+
+#[test]
+fn pulses_that_come_during_a_hold_after_the_task_are_those_after_the_run() {
+    let mut flight = with_pulses(5.0, 1000.0);
+    fly_to_the_wait(&mut flight);
+    flight.tick(&[Order::Hold]);
+    flight.pulse = true;
+    flight.tick(&[]);
+    assert_eq!(flight.ended(), None);
+    flight.tick(&[Order::Resume]);
+    flight.tick(&[]);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+    assert_eq!(phases(&flight), [PulsePhase::Before, PulsePhase::After]);
+}
+
+#[test]
+fn a_mission_that_is_ended_in_the_wait_says_that_the_test_is_missing() {
+    let mut flight = with_pulses(5.0, 1000.0);
+    fly_to_the_wait(&mut flight);
+    flight.tick(&[Order::Hold]);
+    flight.tick(&[Order::Abort]);
+    assert_eq!(phases(&flight), [PulsePhase::Before, PulsePhase::After]);
+    assert_eq!(flight.ended(), Some(Outcome::Aborted));
 }

@@ -30,6 +30,9 @@ pub(super) fn clauses(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String>
         (None, None) if run.is_tether_broken() => held_by_break(head, by),
         (None, None) => held_for_good(head, by),
     });
+    if run.position.pulses_until_s.is_some() {
+        clauses.insert(1, "Task done; only the last pulse test is missing.".into());
+    }
     if head == Head::NotConfirmed {
         clauses.insert(1, if is_drivable { MAY_MOVE } else { MAY_MOVE_SHORT }.into());
     }
