@@ -3,7 +3,7 @@
 use crate::clock;
 use mission::{
     ClockOffset, EventKind,
-    event::{PulsePhase, bias_text, change_text, pulse_failure_text, pulse_text},
+    event::{PulsePhase, bias_text, change_text, clocks_changed_text, pulse_failure_text, pulse_text},
 };
 use positioning::{Estimated, Integrity, PulseError, PulseTest, SoundSpeed};
 use serde::{Deserialize, Serialize};
@@ -205,6 +205,7 @@ impl Ranging {
             EventKind::Separable => self.not_separable_since_s = None,
             EventKind::ClocksEstimated { offsets } => self.clocks.clone_from(offsets),
             EventKind::PulsesTested { phase, test } => self.test(t_s, *phase, Ok(test)),
+            EventKind::ClocksChanged { changes } => self.clocks_changed(changes),
             EventKind::PulsesFailed { phase, why } => self.test(t_s, *phase, Err(*why)),
             _ => {}
         }
@@ -236,6 +237,15 @@ impl Ranging {
             }
         };
         self.pulse_tests.push(record);
+    }
+
+    /// Adds changed clocks to the test that shows them: the ranges since the test before were wrong.
+    fn clocks_changed(&mut self, changes: &[ClockOffset]) {
+        let found = clocks_changed_text(changes, &self.stations);
+        if let Some(test) = self.pulse_tests.last_mut() {
+            test.found = format!("{}; {found}", test.found);
+            (test.agrees, test.contradicts) = (false, true);
+        }
     }
 
     fn name(&self, id: StationId) -> String {

@@ -27,7 +27,9 @@ pub use effort::Effort;
 pub use log_line::{LogLine, late_text};
 pub use measured::{Asked, Measured, ToolTrack};
 pub use offer::{OfferEnd, OfferStage, PlanScan, PlanScans};
-pub use pulse::{PulsePhase, bias_text, change_text, pulse_error_text, pulse_failure_text, pulse_text};
+pub use pulse::{
+    PulsePhase, bias_text, change_text, clocks_changed_text, pulse_error_text, pulse_failure_text, pulse_text,
+};
 pub use recorded::RecordedAnswers;
 pub(crate) use rounding::rounded_command;
 pub use run_opened::RunOpened;
@@ -230,6 +232,12 @@ pub enum EventKind {
         phase: PulsePhase,
         /// The result.
         test: PulseTest,
+    },
+    /// Pulses show that clocks of stations have changed since the last usable test, although the stations share one clock:
+    /// ranges since then were wrong.
+    ClocksChanged {
+        /// The change of each clock, relative to most of the others.
+        changes: Vec<ClockOffset>,
     },
     /// The task is done, or the robot is back; it stands still until the stations have exchanged their last pulses.
     PulsesAwaited {

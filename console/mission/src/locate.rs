@@ -171,14 +171,21 @@ impl Locator {
     }
 
     /// Evaluates the pulses that the stations exchanged.
-    fn test_stations(&mut self, pulses: &[PulseSet]) -> Option<EventKind> {
-        let (event, agreeing) = self.pulses.take(pulses)?;
+    fn test_stations(&mut self, pulses: &[PulseSet]) -> Vec<EventKind> {
+        let Some((event, agreeing)) = self.pulses.take(pulses) else { return Vec::new() };
+        let mut events = vec![event];
         if let Some(test) = &agreeing {
+            let changes = self.pulses.clock_changes(test);
             self.positioner.take_pulses(test);
             self.protection.iter_mut().for_each(|protection| protection.guard.take_pulses(test));
             self.pulses.doubt().into_iter().for_each(|doubt| self.doubt(doubt));
+            // Beside a session calibration, the test corrects no range.
+            if changes.len() > 1 && self.session.is_some() {
+                self.protection.iter_mut().for_each(|protection| protection.guard.note_two_wrong());
+            }
+            events.extend((!changes.is_empty()).then_some(EventKind::ClocksChanged { changes }));
         }
-        Some(event)
+        events
     }
 
     fn cycle(&mut self, readings: &Readings, t_s: f64) -> Vec<EventKind> {

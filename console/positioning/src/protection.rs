@@ -76,7 +76,7 @@ pub enum Unprotected {
     /// The ranges fit neither sound stations nor a single wrong one.
     #[error("the ranges fit no single wrong station")]
     Contradiction,
-    /// The session calibration has found two wrong stations at once.
+    /// The session calibration or a pulse test has found two wrong stations at once.
     #[error("two stations were wrong at once, and it is uncertain which two")]
     TwoWrong,
     /// The last cycles gave no fix.

@@ -19,6 +19,9 @@ const MOST_OFFSET_M: f64 = 20.0;
 const LEAST_CHANGE: f64 = 0.005;
 /// Number of standard deviations above which the scale has changed between two tests.
 const CHANGED: f64 = 3.0;
+/// The same for the clock of a station: every test compares several of them. And the least change that is stated, metres.
+const CLOCK_CHANGED: f64 = 5.0;
+const LEAST_CLOCK_CHANGE_M: f64 = 0.02;
 /// Standard deviation of the scale above which pulses do not determine it.
 const UNKNOWN_SCALE: f64 = 0.05;
 /// Standard deviation of an offset above which pulses do not determine it, metres.
@@ -217,6 +220,28 @@ impl PulseTest {
         let value = self.scale.value - before.scale.value;
         let sigma = self.scale.sigma.hypot(before.scale.sigma);
         (value.abs() > (CHANGED * sigma).max(LEAST_CHANGE)).then_some(Estimated { value, sigma })
+    }
+}
+
+impl PulseTest {
+    /// Returns the stations whose clocks have changed since an earlier test by more than chance explains, each with its change,
+    /// metres. Clocks show only relative to each other, so the median of all changes counts as zero.
+    pub fn clock_changes_since(&self, before: &Self) -> Vec<(StationId, Estimated)> {
+        let change = |(id, now): &(StationId, Estimated)| {
+            let (_, then) = before.offsets_m.iter().find(|(station, _)| station == id)?;
+            let sigma = now.sigma.hypot(then.sigma);
+            Some((*id, Estimated { value: now.value - then.value, sigma }))
+        };
+        let mut changes: Vec<(StationId, Estimated)> = self.offsets_m.iter().filter_map(change).collect();
+        let mut sizes: Vec<f64> = changes.iter().map(|(_, change)| change.value).collect();
+        sizes.sort_by(f64::total_cmp);
+        let Some(middle) = sizes.get(sizes.len() / 2).copied() else { return Vec::new() };
+        for (_, change) in &mut changes {
+            change.value -= middle;
+        }
+        let least_m = |sigma: f64| (CLOCK_CHANGED * sigma).max(LEAST_CLOCK_CHANGE_M);
+        changes.retain(|(_, change)| change.value.abs() > least_m(change.sigma));
+        changes
     }
 }
 

@@ -8,7 +8,7 @@ mod tether;
 pub use planners::late_text;
 
 use super::{
-    Event, EventKind, SurveyWay, bias_text, pulse_failure_text, pulse_text,
+    Event, EventKind, SurveyWay, bias_text, clocks_changed_text, pulse_failure_text, pulse_text,
     severity::{self, Severity},
 };
 use crate::engine::side;
@@ -88,6 +88,9 @@ impl Event {
                 let is_wrong = test.integrity == Integrity::Alarm;
                 let severity = if is_wrong { Severity::Warn } else { Severity::Info };
                 line(severity, "ae", pulse_text(*phase, test, stations))
+            }
+            EventKind::ClocksChanged { changes } => {
+                line(Severity::Warn, "ae", clocks_changed_text(changes, stations))
             }
             EventKind::PulsesFailed { phase, why } => {
                 line(Severity::Warn, "ae", pulse_failure_text(*phase, *why, stations))

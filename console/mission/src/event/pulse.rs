@@ -1,5 +1,6 @@
 //! The errors of the stations in words: the pulse test, and biases.
 
+use super::ClockOffset;
 use positioning::{Estimated, Integrity, PulseError, PulseTest};
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
@@ -85,6 +86,21 @@ pub fn pulse_error_text(why: PulseError, stations: &[Station]) -> String {
 /// A failed pulse test as a sentence.
 pub fn pulse_failure_text(phase: PulsePhase, why: PulseError, stations: &[Station]) -> String {
     format!("pulse test {} failed: {}", phase.words(), pulse_error_text(why, stations))
+}
+
+/// The clocks that changed between two tests, as a sentence.
+pub fn clocks_changed_text(changes: &[ClockOffset], stations: &[Station]) -> String {
+    let one = |ClockOffset { station, offset_m }: &ClockOffset| {
+        let known = stations.iter().find(|known| known.id == *station);
+        let name = known.map_or_else(|| station.0.to_string(), |known| known.name.clone());
+        format!("{name} by {}", bias_text(offset_m))
+    };
+    let all: Vec<String> = changes.iter().map(one).collect();
+    format!(
+        "CLOCKS CHANGED since the test before, as lengths that sound travels: {}; positions since then may be wrong, check \
+         the stations",
+        all.join(", ")
+    )
 }
 
 /// What the change of the speed of sound between two tests means, as a sentence; `None` if the tests agree.

@@ -177,7 +177,7 @@ impl EventKind {
                 round(length_m);
                 round(most_m);
             }
-            Self::ClocksEstimated { offsets } => {
+            Self::ClocksEstimated { offsets } | Self::ClocksChanged { changes: offsets } => {
                 for offset in offsets {
                     round_estimated(&mut offset.offset_m);
                 }

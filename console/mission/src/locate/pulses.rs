@@ -2,7 +2,7 @@
 
 use crate::{
     config::Locating,
-    event::{EventKind, PulsePhase},
+    event::{ClockOffset, EventKind, PulsePhase},
 };
 use positioning::{
     CommonError, Doubt, Pulse, PulseError, PulseSeries, PulseTest, RangeNoise, Repetitions, Timing,
@@ -23,8 +23,10 @@ pub(super) struct PulseTests {
     has_ranged: bool,
     /// Whether the task is done.
     has_ended: bool,
-    /// The last test that agreed with the survey.
+    /// The last test that agreed with the survey, as the correction of ranges.
     last: PulseSeries,
+    /// The same, to compare clocks with.
+    before: Option<PulseTest>,
 }
 
 impl PulseTests {
@@ -39,6 +41,7 @@ impl PulseTests {
             has_ranged: false,
             has_ended: false,
             last: PulseSeries::default(),
+            before: None,
         }
     }
 
@@ -76,6 +79,14 @@ impl PulseTests {
         }
         let agreeing = agrees.then(|| test.clone());
         Some((EventKind::PulsesTested { phase, test }, agreeing))
+    }
+
+    /// Returns the clocks that have changed between the last agreeing test and this one, which takes its place. Clocks of
+    /// their own change all the time.
+    pub(super) fn clock_changes(&mut self, agreeing: &PulseTest) -> Vec<ClockOffset> {
+        let before = self.before.replace(agreeing.clone()).filter(|_| !self.has_clocks);
+        let changes = before.map(|before| agreeing.clock_changes_since(&before)).unwrap_or_default();
+        changes.into_iter().map(|(station, offset_m)| ClockOffset { station, offset_m }).collect()
     }
 
     /// The part of a test that corrects ranges.

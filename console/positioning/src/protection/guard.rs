@@ -120,6 +120,11 @@ impl Guard {
         self.others.iter_mut().for_each(|other| other.positioner.doubt(doubt));
     }
 
+    /// Notes that two stations have proved to be wrong at once; see [`Unprotected::TwoWrong`].
+    pub fn note_two_wrong(&mut self) {
+        self.has_two_wrong = true;
+    }
+
     /// Takes the clocks of the stations from a pulse test that agrees with the survey; see [`Positioner::take_pulses`].
     pub fn take_pulses(&mut self, test: &PulseTest) {
         self.has_two_wrong = false;

@@ -113,6 +113,22 @@ fn between_two_tests_the_errors_change_linearly_and_outside_they_stay() {
     assert!(sets.is_empty(), "the clock of a station in no test is unknown: {sets:?}");
 }
 
+#[test]
+fn clocks_that_changed_since_an_earlier_test_are_named() {
+    let stations = ring(6, 10.0);
+    let mut draws = Draws::new(0.0, 1, 9);
+    let mut test = |offsets_m: &[f64]| {
+        let made: Vec<Pulse> = (0..10).flat_map(|_| pulses(&stations, 0.02, offsets_m, &mut draws)).collect();
+        PulseTest::new(&made, &stations).unwrap()
+    };
+    let before = test(&[0.2, 0.0, -0.1, 0.0, 0.0, 0.3]);
+    assert_eq!(test(&[0.2, 0.0, -0.1, 0.0, 0.0, 0.3]).clock_changes_since(&before), []);
+    let changed = test(&[0.7, 0.0, -0.1, 0.5, 0.0, 0.3]).clock_changes_since(&before);
+    let named: Vec<(u32, bool)> =
+        changed.iter().map(|(id, change)| (id.0, (change.value - 0.5).abs() < 0.15)).collect();
+    assert_eq!(named, [(1, true), (4, true)], "{changed:?}");
+}
+
 proptest! {
     #[test]
     fn any_pulses_give_a_finite_test_or_a_reason(

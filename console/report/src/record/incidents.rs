@@ -146,7 +146,7 @@ fn sort(kind: &EventKind) -> Option<Sorted> {
         EventKind::PulsesTested { test, .. } if test.integrity != Integrity::Alarm => {
             ("", None, key("pulses"))
         }
-        EventKind::PulsesTested { .. } | EventKind::PulsesFailed { .. } => {
+        EventKind::PulsesTested { .. } | EventKind::PulsesFailed { .. } | EventKind::ClocksChanged { .. } => {
             ("alarm", key("pulses"), key("pulses"))
         }
         EventKind::Link(_) | EventKind::Noticed(_) | EventKind::Stood { .. } => return of_vehicle(kind),

@@ -80,6 +80,7 @@ impl Run {
             | EventKind::PulsesAwaited { .. }
             | EventKind::PulsesTested { .. }
             | EventKind::PulsesFailed { .. }
+            | EventKind::ClocksChanged { .. }
             | EventKind::StationBiased { .. }
             | EventKind::StationUnbiased { .. }
             | EventKind::NotSeparable { .. }

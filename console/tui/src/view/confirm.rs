@@ -156,10 +156,9 @@ fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
             let speed = model.live.speed;
             let fast = (speed != Speed::Times(1.0)).then(|| format!("Speed {}.", text::speed(speed)));
             let first = std::iter::once(question).chain(fast).chain(torn.or(slack)).chain(in_zone);
-            if model.live.run.position.pulses_until_s.is_some() {
-                return first.chain([ONLY_PULSES.to_owned()]).collect();
-            }
-            first.chain([moves(model)]).chain(continues(model)).collect()
+            let is_done = model.live.run.position.pulses_until_s.is_some();
+            let goes_on = if is_done { (ONLY_PULSES.into(), None) } else { (moves(model), continues(model)) };
+            first.chain([goes_on.0]).chain(goes_on.1).collect()
         }
         Overlay::Confirm(Ask::FlyUncertified) => uncertified(model.live.run.phase()),
         Overlay::Confirm(Ask::Swap(choice)) => {

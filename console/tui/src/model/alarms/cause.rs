@@ -86,7 +86,9 @@ impl Cause {
                 Self::Bias(*station)
             }
             EventKind::NotSeparable { .. } | EventKind::Separable => Self::NotSeparable,
-            EventKind::PulsesTested { .. } | EventKind::PulsesFailed { .. } => Self::Pulses,
+            EventKind::PulsesTested { .. }
+            | EventKind::PulsesFailed { .. }
+            | EventKind::ClocksChanged { .. } => Self::Pulses,
             EventKind::FixFailed { .. } => Self::NoFix,
             EventKind::ChannelsJudged(_) => Self::DeadChannel,
             EventKind::ObstacleFound { .. } => Self::Map,

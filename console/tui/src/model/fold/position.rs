@@ -55,6 +55,7 @@ impl Run {
                 self.position.pulses = Some(Err(pulse_error_text(*why, self.stations())));
                 self.raise_as_logged(event, Cause::Pulses);
             }
+            EventKind::ClocksChanged { .. } => self.raise_as_logged(event, Cause::Pulses),
             EventKind::StationBiased { station, .. } => {
                 self.clear(&Cause::Station(*station));
                 self.raise_as_logged(event, Cause::Bias(*station));

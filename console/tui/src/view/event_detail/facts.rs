@@ -33,6 +33,7 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::NotSeparable { .. } => "bias not separable",
         EventKind::PulsesTested { .. } => "pulse test",
         EventKind::PulsesFailed { .. } => "pulse test failed",
+        EventKind::ClocksChanged { .. } => "clocks changed",
         EventKind::Separable => "bias separable again",
         EventKind::RangesInconsistent { .. } => "ranges contradict each other",
         EventKind::RangesConsistent => "ranges agree again",
