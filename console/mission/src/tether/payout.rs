@@ -40,7 +40,7 @@ impl Explained {
     /// Excess length that sag and stretch may cause, metres. A straight cable of length L that is dragged across the floor
     /// sags by w² L³ / (24 T²), with w the friction of the floor per metre and T the pull of the reel: L / 24 times the
     /// square of the ratio of the pulls. A reel that is too weak leaves slack, which does not pull.
-    pub(super) fn sag_m(self) -> f64 {
+    fn sag_m(self) -> f64 {
         let dragged = SAG_FACTOR / 24.0 * self.pull_ratio.clamp(0.0, 1.0).powi(2);
         self.length_m * SAG_SHARE.max(dragged)
     }

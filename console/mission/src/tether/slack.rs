@@ -27,8 +27,6 @@ pub(super) struct ReelState<'a> {
     pub reel: Option<&'a Reel>,
     /// Whether it has stopped.
     pub has_stopped: bool,
-    /// Slack that it is known to take up, metres.
-    pub sag_m: f64,
 }
 
 /// The slack of the cable, from the encoder of the reel and the pull on the cable.
@@ -38,8 +36,6 @@ pub(super) struct Slack {
     taut_excess_m: Option<f64>,
     /// Cable that has become slack since then, metres.
     loose_m: f64,
-    /// Slack that the reel is known to take up, metres: the sag of a cable that jams and slides in jumps.
-    sag_m: f64,
     /// Measured pull, newtons; `None` without a sensor.
     pull_n: Option<f64>,
     /// The path driven since shortly before the cable last pulled, its points [`KEPT_M`] apart.
@@ -63,8 +59,7 @@ impl Slack {
     /// Processes the cable out beyond the expected length, metres, and the pull, newtons. Returns whether the cable pulls,
     /// or its pull is not measured: only then can it be caught.
     pub(super) fn take(&mut self, excess_m: Option<f64>, pull_n: Option<f64>, at: ReelState<'_>) -> bool {
-        let ReelState { reel, has_stopped, sag_m } = at;
-        self.sag_m = sag_m;
+        let ReelState { reel, has_stopped } = at;
         let little_n = little_n(reel, LOOP_M + self.loose_m);
         let Some(pull_n) = pull_n.filter(|pull_n| pull_n.is_finite()) else {
             *self = Self::default();
@@ -104,16 +99,12 @@ impl Slack {
     /// The alarm, with the slack as a share of its limit.
     pub(super) fn alarm(&self) -> (TetherAlarm, f64) {
         let pull_n = self.pull_n.unwrap_or_default();
-        (TetherAlarm::Slack { slack_m: self.beyond_sag_m(), pull_n }, self.beyond_sag_m() / SLACK_M)
+        (TetherAlarm::Slack { slack_m: self.loose_m, pull_n }, self.loose_m / SLACK_M)
     }
 
     /// The last measured pull with the slack; `None` without a sensor.
     pub(super) fn measured(&self) -> Option<MeasuredPull> {
-        self.pull_n.map(|pull_n| MeasuredPull { pull_n, slack_m: self.beyond_sag_m() })
-    }
-
-    fn beyond_sag_m(&self) -> f64 {
-        (self.loose_m - self.sag_m).max(0.0)
+        self.pull_n.map(|pull_n| MeasuredPull { pull_n, slack_m: self.loose_m })
     }
 }
 
@@ -151,15 +142,6 @@ mod tests {
         assert!(slack.take(Some(0.3), Some(2.6), working()), "the reel works again");
         slack.distrust();
         assert!(!slack.take(Some(0.5), Some(2.6), stopped) && slack.alarm().1 > 2.0);
-    }
-
-    #[test]
-    fn sag_that_the_reel_is_known_to_take_up_is_not_slack() {
-        let jams = ReelState { sag_m: 0.2, ..working() };
-        let mut slack = Slack::default();
-        assert!(slack.take(Some(0.0), Some(3.0), jams));
-        assert!(!slack.take(Some(0.3), Some(0.0), jams) && (0.4..0.6).contains(&slack.alarm().1));
-        assert!(!slack.take(Some(0.45), Some(0.0), jams) && slack.alarm().1 > 1.0);
     }
 
     #[test]

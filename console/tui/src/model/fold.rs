@@ -209,12 +209,17 @@ impl Run {
             return;
         };
         self.scanned_history.add(event.t_s, 100.0 * covered_reachable);
+        // A drive back leads along lanes that it does not scan: it is no progress along the plan.
+        let kept = self.progress.take().filter(|_| self.phase().is_return());
+        let kept = kept.map(|kept| (kept.done, kept.along_m, kept.cross_track_m, kept.target));
+        let (done, along_m, cross_track_m, target) =
+            kept.unwrap_or((*done, *along_m, *cross_track_m, *target));
         self.progress = Some(Progress {
             t_s: event.t_s,
-            done: *done,
-            along_m: *along_m,
-            cross_track_m: *cross_track_m,
-            target: *target,
+            done,
+            along_m,
+            cross_track_m,
+            target,
             covered_reachable: *covered_reachable,
             covered_whole: *covered_whole,
         });

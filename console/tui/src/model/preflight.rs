@@ -142,6 +142,9 @@ impl Model {
         let planning = &self.live.run.planning;
         let standing = self.live.run.standing.standing();
         match (&planning.plan, &self.live.busy) {
+            (_, Some(busy)) if *self.live.run.phase() != Phase::Waiting => {
+                check("plan", CheckOutcome::Warning, busy.how_far())
+            }
             (_, Some(busy)) => check(
                 "plan",
                 CheckOutcome::Failed,

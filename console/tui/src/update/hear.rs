@@ -141,6 +141,15 @@ fn take(model: &mut Model, event: &Event) {
     }
     withdraw(model, withdrawn);
     withdraw_start(model);
+    withdraw_offer(model);
+}
+
+/// Withdraws the question about a better plan that is no longer on offer.
+fn withdraw_offer(model: &mut Model) {
+    if matches!(model.ui.overlay, Overlay::Confirm(Ask::TakePlan)) && model.live.run.planning.offer.is_none()
+    {
+        model.ui.overlay = Overlay::None;
+    }
 }
 
 /// Withdraws a start that was requested with a plan that has been replaced since.

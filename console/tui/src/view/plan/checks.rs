@@ -50,7 +50,12 @@ fn bad_in(look: &Look, bad: &[&Check], columns: usize, rows: usize) -> Vec<Line<
             lines.push(bad_line(look, check, columns));
         }
     }
-    if counted && rows > 0 {
+    if counted && rows == 1 {
+        let names: Vec<&str> = bad.iter().map(|check| check.what.as_str()).collect();
+        let (role, word) = mark(bad[0]);
+        let text = text::fit(&format!(" {word}: {}", names.join(", ")), columns);
+        lines.push(look.line([(role, text)]));
+    } else if counted && rows > 0 {
         lines.push(look.line([(Role::Warn, format!(" and {} more", bad.len() - shown))]));
     }
     lines

@@ -68,7 +68,9 @@ pub(super) fn in_a_line(look: &Look, columns: usize) -> (Role, String) {
     let (role, state) = progress(look);
     let certificate = certificate(look, columns).map_or_else(String::new, |(_, words)| format!(" {words}."));
     let short = in_short(look).unwrap_or_else(|| state.clone());
-    (role, text::wording([format!("{state}{certificate}"), short, text::clauses(&state, columns)], columns))
+    let figures = in_figures(look).unwrap_or_else(|| short.clone());
+    let wordings = [format!("{state}{certificate}"), short, figures, text::clauses(&state, columns)];
+    (role, text::wording(wordings, columns))
 }
 
 fn one((role, words): (Role, String)) -> Parts {
@@ -149,6 +151,17 @@ fn in_short(look: &Look) -> Option<String> {
         () => "at the start ",
     };
     Some(format!("{}{certified}: {of}{scanned} % of requested{areas}.", readiness(look)))
+}
+
+/// The share that the plan scans, in the fewest words.
+fn in_figures(look: &Look) -> Option<String> {
+    look.run.planning.plan.as_ref().filter(|_| look.model.live.busy.is_none())?;
+    let scanned = text::percent(look.model.live.left_out()?.scanned());
+    let live = &look.model.live;
+    let first = live.left_out_at_start().filter(|_| live.left_out_by_plan().is_some());
+    let promised =
+        first.map_or_else(String::new, |first| format!(" (promised {} %)", text::percent(first.scanned())));
+    Some(format!("{}: {scanned} % of requested{promised}.", readiness(look)))
 }
 
 /// How much of the task the plan achieves. The base is the floor that was requested.
