@@ -12,7 +12,6 @@ use crate::{
 };
 use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use world::{ObstacleMap, Point, Station, StationId, World};
 
 /// Standard normal quantile of the share of the cases in which the least detectable error is noticed: 80 %.
@@ -21,9 +20,6 @@ const POWER_Z: f64 = 0.841_621_234;
 /// cases: the bias must exceed five of them, and must fit better by far than that of any other station. Measured with
 /// `tankops-research reproduce detectable`.
 pub(crate) const SESSION_SIGMAS: f64 = 6.3;
-/// The same for the lead over another station: the number of standard deviations of the difference between a bias of the one
-/// and a bias of the other.
-const LEAD_SIGMAS: f64 = 4.8;
 /// Upper bound of a least detectable error, in standard deviations, and the number of halvings of the interval below it.
 const MOST_SIGMAS: f64 = 100.0;
 const HALVINGS: u32 = 30;
@@ -58,7 +54,7 @@ impl Checks {
 pub struct SessionChecks {
     /// The number of fixes.
     pub fixes: usize,
-    /// The station that is named last; absent if one never is.
+    /// The station whose error shows least; absent if that of one never shows.
     pub worst: Option<StationId>,
     /// Least error of the worst station for which the calibration names it within the session in 80 % of the cases, although
     /// the speed of sound is unknown, metres; absent if an error never shows.
@@ -165,17 +161,6 @@ impl Heard {
         }
     }
 
-    /// Adds the information about the errors of each two stations together.
-    fn add_between(&self, all: &mut Between) {
-        for (index, one) in self.rows.iter().enumerate() {
-            for other in &self.rows[..index] {
-                let pair = (one.station.min(other.station), one.station.max(other.station));
-                let common = one.direction.dot(&(self.covariance * other.direction)) + self.shared;
-                *all.entry(pair).or_default() -= one.weight * other.weight * common;
-            }
-        }
-    }
-
     /// The usual protection level of a fix, metres: with the deviation of one standard deviation between the fix and the
     /// position without a station.
     fn level_m(&self, risk: &Risk) -> Option<f64> {
@@ -227,9 +212,6 @@ fn centred(rows: &mut [Row]) -> f64 {
     1.0 / weight
 }
 
-/// The information that fixes contain about the errors of two stations together, by the ids of the two.
-type Between = BTreeMap<(StationId, StationId), f64>;
-
 /// The information that fixes contain about patterns of range errors.
 struct Patterns {
     /// About the scale of all ranges.
@@ -258,33 +240,20 @@ impl Patterns {
 
     /// The error of the worst station that is this number of standard deviations, metres; `None` if it never shows.
     fn detectable_m(&self, sigmas: f64) -> Option<f64> {
-        let least = self.stations.iter().map(|(_, pattern)| pattern.alone).fold(f64::INFINITY, f64::min);
-        (least > 0.0 && least.is_finite()).then(|| sigmas / least.sqrt())
+        self.worst(false).map(|(_, sigma_m)| sigmas * sigma_m)
     }
 
-    /// The part of the information about the errors of two stations that an unknown scale leaves; `between` is that with a
-    /// known scale.
-    fn beside_scale(&self, one: &Pattern, other: &Pattern, between: f64) -> f64 {
-        if self.scale > 0.0 { between - one.both * other.both / self.scale } else { between }
-    }
-
-    /// The station that a session must be told least well from the others, or that shows least, and its least error that is
-    /// named, metres; `None` if it never is.
-    fn worst(&self, between: &Between) -> Option<(StationId, f64)> {
-        let alone = |pattern: &Pattern| self.beside_scale(pattern, pattern, pattern.alone);
-        let named_m = |(id, own): &(StationId, Pattern)| {
-            let correlation = |(other_id, other): &(StationId, Pattern)| {
-                let pair = (*id.min(other_id), *id.max(other_id));
-                let shared = self.beside_scale(own, other, between.get(&pair).copied().unwrap_or(0.0));
-                shared.abs() / (alone(own) * alone(other)).sqrt()
-            };
-            let others = self.stations.iter().filter(|(other, _)| other != id);
-            let nearest = others.map(correlation).fold(0.0, f64::max);
-            let apart = (1.0 - nearest * nearest).max(0.0).sqrt();
-            (*id, SESSION_SIGMAS.max(LEAD_SIGMAS / apart) / alone(own).sqrt())
+    /// The station whose error shows least, and the standard deviation with which this error is known, metres; `None` if it
+    /// never shows.
+    fn worst(&self, is_scale_free: bool) -> Option<(StationId, f64)> {
+        let information = |pattern: &Pattern| {
+            let shared =
+                if is_scale_free && self.scale > 0.0 { pattern.both.powi(2) / self.scale } else { 0.0 };
+            pattern.alone - shared
         };
-        let worst = self.stations.iter().map(named_m).max_by(|a, b| a.1.total_cmp(&b.1));
-        worst.filter(|(_, named_m)| named_m.is_finite() && *named_m > 0.0)
+        let of = |(station, pattern): &(StationId, Pattern)| (*station, information(pattern));
+        let (station, least) = self.stations.iter().map(of).min_by(|a, b| a.1.total_cmp(&b.1))?;
+        (least > 0.0 && least.is_finite()).then(|| (station, 1.0 / least.sqrt()))
     }
 
     fn add(&mut self, other: &Self) {
@@ -353,18 +322,17 @@ impl Forecast {
         let n = SESSION_FIXES.min(places.len());
         let chosen = (0..n).map(|k| places[k * places.len() / n]);
         let mut all = Patterns { scale: 0.0, stations: Vec::new() };
-        let (mut between, mut fixes) = (Between::new(), 0);
+        let mut fixes = 0;
         for heard in chosen.filter_map(|place| Heard::at(self, place, stations, map)) {
             all.add(&heard.patterns());
-            heard.add_between(&mut between);
             fixes += 1;
         }
         let correlation = all.correlation();
-        let worst = all.worst(&between);
+        let worst = all.worst(true);
         (fixes > 0).then(|| SessionChecks {
             fixes,
             worst: worst.map(|(station, _)| station),
-            detectable_m: worst.map(|(_, named_m)| named_m),
+            detectable_m: worst.map(|(_, sigma_m)| SESSION_SIGMAS * sigma_m),
             correlation,
             is_separable: correlation <= NOT_SEPARABLE,
         })
