@@ -206,7 +206,8 @@ impl Tether {
         let pull_ratio = self.pull_needed_n().zip(reel).map_or(0.0, |(n, reel)| n / reel.pull_n);
         let explained = error_m.map(|error_m| Explained { length_m, error_m, points, pull_ratio });
         let excess_m = explained.and(readings.paid_out_m).map(|out_m| out_m - length_m);
-        let state = ReelState { reel: reel.as_ref(), has_stopped: self.take_up.has_stopped() };
+        let has_stopped = self.take_up.has_stopped();
+        let state = ReelState { reel: reel.as_ref(), has_stopped };
         let can_be_caught = self.slack.take(excess_m, pull_n(readings), state);
         let explained = explained.filter(|_| can_be_caught);
         self.payout.take(readings.paid_out_m, explained, self.config.limits.reel_length_m, passed_s);
