@@ -36,7 +36,7 @@ const MOST_CURVED: f64 = 0.25;
 /// The length of a step, metres, below which its curvature does no harm.
 const NEAR_M: f64 = 0.05;
 /// The length of a step, as a share of the distance to the nearest station, up to which the second order suffices: the third
-/// changes the step by less than 1 in 500.
+/// changes the pull by less than 1 in 200.
 const SHORT: f64 = 0.05;
 /// The number of stations above the number of unknowns that a level needs: one for the fault, and one to exclude the
 /// mirror image of the remaining stations.

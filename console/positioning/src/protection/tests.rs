@@ -222,7 +222,7 @@ fn the_pull_after_a_short_step_is_that_of_the_second_order() {
             let (exact, near) = (row.pull(seen.position, &step), row.pull_near(&step));
             // A range that is wrong by the error of the distance pulls with its weight.
             let off_m = (exact - near).norm() / row.weight;
-            assert!(off_m < 0.002 * step.xy().norm(), "{off_m} m, {step}");
+            assert!(off_m < 0.005 * step.xy().norm(), "{off_m} m, {step}");
         }
     }
 }

@@ -56,7 +56,7 @@ fn a_drive_back_is_no_progress_along_the_plan_although_it_crosses_its_lanes() {
         done: before.done + 0.3,
         along_m: Some(900.0),
         cross_track_m: Some(4.0),
-        target: world::Point::new(-3.0, 4.0),
+        target: Point::new(-3.0, 4.0),
         covered_reachable: 0.5,
         covered_whole: 0.4,
         leg: None,
