@@ -20,9 +20,8 @@ pub(super) struct PulseTests {
     corrects: bool,
     /// Whether the clocks of the stations are estimated: then a test only corrects the speed of sound.
     has_clocks: bool,
-    has_ranged: bool,
-    /// Whether the task is done.
-    has_ended: bool,
+    /// The part of the run that a test belongs to now.
+    phase: PulsePhase,
     /// The last test that agreed with the survey, as the correction of ranges.
     last: PulseSeries,
     /// The same, to compare clocks with.
@@ -38,8 +37,7 @@ impl PulseTests {
             timing: locating.timing,
             corrects: locating.session.is_none() && !locating.calibrate_sound_speed,
             has_clocks: locating.clocks.is_some(),
-            has_ranged: false,
-            has_ended: false,
+            phase: PulsePhase::Before,
             last: PulseSeries::default(),
             before: None,
         }
@@ -47,12 +45,14 @@ impl PulseTests {
 
     /// Notes that ranges of the robot have come.
     pub(super) fn note_ranges(&mut self) {
-        self.has_ranged = true;
+        if self.phase == PulsePhase::Before {
+            self.phase = PulsePhase::Held;
+        }
     }
 
     /// Notes that the task is done: the next test is the one after the run. A robot that goes on takes this back.
     pub(super) fn note_end(&mut self, has_ended: bool) {
-        self.has_ended = has_ended;
+        self.phase = if has_ended { PulsePhase::After } else { PulsePhase::Held };
     }
 
     /// Evaluates an exchange of pulses; returns its event, and the test if it agrees with the survey.
@@ -61,11 +61,7 @@ impl PulseTests {
             return None;
         }
         let sets = &by_pair(sets);
-        let phase = match (self.has_ended, self.has_ranged) {
-            (true, _) => PulsePhase::After,
-            (false, true) => PulsePhase::Held,
-            (false, false) => PulsePhase::Before,
-        };
+        let phase = self.phase;
         let are_copies = self.are_copies(sets);
         let pulses: Vec<Pulse> = sets.iter().filter_map(|set| self.pulse(set, are_copies)).collect();
         let test = self.possible(&pulses).and_then(|()| PulseTest::new(&pulses, &self.stations));

@@ -265,10 +265,13 @@ impl Live {
     }
 
     /// The area of the floor in doubt, square metres, and the stations that were wrong, by name; `None` if no floor is in
-    /// doubt. Floor that a later pass guarantees counts until the run has ended.
+    /// doubt. Floor that a later pass guarantees counts until the run has ended. After a re-scan, the floor of all runs together
+    /// counts.
     pub fn doubt(&self) -> Option<(f64, String)> {
         let all = self.in_doubt();
-        let area_m2 = all.iter().map(|doubt| doubt.floor.left_m2.unwrap_or(doubt.floor.area_m2)).sum();
+        let own_m2 = all.iter().map(|doubt| doubt.floor.left_m2.unwrap_or(doubt.floor.area_m2)).sum();
+        let of_all = self.together().and_then(|all| all.taken_back.as_ref());
+        let area_m2: f64 = of_all.map_or(own_m2, |floor| (floor.area_m2 - floor.again_m2).max(0.0));
         let mut stations: Vec<&str> = all.iter().map(|doubt| doubt.floor.station.as_str()).collect();
         stations.dedup();
         (area_m2 > 0.0).then(|| (area_m2, stations.join(" ")))

@@ -415,10 +415,14 @@ pub(in crate::view) fn of_run(
     Some(look.cache.borrow_mut().shades(key, make))
 }
 
-/// Whether a dot is shaded: half a character that is partly beyond the wall stays blank; a whole character there belongs to
-/// the wall.
+/// Whether a dot is shaded: half a character that is partly beyond the wall stays blank, and a whole character whose middle is
+/// beyond it.
 fn is_inside(raster: &Raster, rows_per_row: u16, (at, edge_m): (Point, f64)) -> bool {
-    rows_per_row == 1 || is_floor(raster, at, edge_m)
+    if rows_per_row > 1 {
+        return is_floor(raster, at, edge_m);
+    }
+    let floor = raster.floor();
+    floor.cell_at(at).is_some_and(|cell| floor.is_floor(cell))
 }
 
 /// The floor of the run with which the replay is compared, if the difference is shown.

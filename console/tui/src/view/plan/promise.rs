@@ -99,9 +99,13 @@ fn of_survey(look: &Look, mission: &MissionConfig, columns: usize) -> Vec<Parts>
     let is_waiting = *look.run.phase() == Phase::Waiting;
     let limited = FIGURES.into_iter().filter_map(|figure| Some((figure, (figure.limit)(mission)?)));
     let rows = limited.map(|(figure, limit)| {
+        let limit = figure.said(limit);
+        if columns < WITH_LIMIT {
+            return vec![(Role::Text, format!(" {}: {limit}", figure.label))];
+        }
         let now = (figure.now)(look.run).filter(|_| !is_waiting);
         let now = now.map_or_else(String::new, |now| text::wording(now, widths.first));
-        row(figure.label, &(Role::Text, now), None, &figure.said(limit), &widths)
+        row(figure.label, &(Role::Text, now), None, &limit, &widths)
     });
     let words = text::wrap(NO_PROMISE, columns.saturating_sub(2)).into_iter();
     words.map(|words| vec![(Role::Text, format!(" {words}"))]).chain(rows).collect()

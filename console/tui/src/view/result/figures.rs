@@ -84,7 +84,11 @@ fn lines(model: &Model, result: &RunResult, columns: usize) -> Vec<Parts> {
 fn doubt(model: &Model) -> Option<String> {
     let (area_m2, stations) = model.live.doubt()?;
     let area_m2 = text::number(area_m2, 1);
-    let words = format!("IN DOUBT: {area_m2} m², scanned while {stations} was wrong. <rescan>: re-scan it.");
+    // A re-scan of a re-scan is worth it only for areas of some size, which the list of missed areas has.
+    let words = match model.live.together() {
+        Some(_) => format!("IN DOUBT after all runs: {area_m2} m², scanned while {stations} was wrong."),
+        None => format!("IN DOUBT: {area_m2} m², scanned while {stations} was wrong. <rescan>: re-scan it."),
+    };
     Some(model.console.keys.spelled(&words))
 }
 
