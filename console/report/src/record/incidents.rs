@@ -115,6 +115,15 @@ impl Incidents {
 /// starts, and the incident that it ends.
 type Sorted = (&'static str, Option<String>, Option<String>);
 
+/// Classifies an event about a pulse test: a test that agrees with the survey ends the alarm of an earlier one.
+fn of_pulses(kind: &EventKind) -> Sorted {
+    let key = || Some("pulses".to_owned());
+    match kind {
+        EventKind::PulsesTested { test, .. } if test.integrity != Integrity::Alarm => ("", None, key()),
+        _ => ("alarm", key(), key()),
+    }
+}
+
 /// Classifies an event; `None` if it is not an incident. The list is complete, so that each new event is considered.
 fn sort(kind: &EventKind) -> Option<Sorted> {
     let key = |text: &str| Some(text.to_owned());
@@ -143,11 +152,8 @@ fn sort(kind: &EventKind) -> Option<Sorted> {
         EventKind::ScannerJudged { trouble: None } => ("", None, key("scanner")),
         EventKind::ChannelsJudged(judged) if judged.dead.is_empty() => ("", None, key("channels")),
         EventKind::ChannelsJudged(_) => ("alarm", key("channels"), key("channels")),
-        EventKind::PulsesTested { test, .. } if test.integrity != Integrity::Alarm => {
-            ("", None, key("pulses"))
-        }
         EventKind::PulsesTested { .. } | EventKind::PulsesFailed { .. } | EventKind::ClocksChanged { .. } => {
-            ("alarm", key("pulses"), key("pulses"))
+            of_pulses(kind)
         }
         EventKind::Link(_) | EventKind::Noticed(_) | EventKind::Stood { .. } => return of_vehicle(kind),
         EventKind::PlannerFailed { fault, .. } if fault.is_no_way() => ("plan", None, None),

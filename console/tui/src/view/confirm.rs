@@ -134,6 +134,20 @@ fn uncertified(phase: &Phase) -> Vec<String> {
         .collect()
 }
 
+/// The question whether to resume, its warnings, and what follows.
+fn resumption(model: &Model) -> Vec<String> {
+    let question = "Resume? The robot will move. <accept>: resume, <cancel>: cancel.".into();
+    let in_zone = model.live.run.is_in_zone().then(|| IN_ZONE.to_owned());
+    let torn = model.live.run.is_tether_broken().then(|| TETHER_BROKEN.to_owned());
+    let slack = model.live.run.is_tether_slack().then(|| TETHER_SLACK.to_owned());
+    let speed = model.live.speed;
+    let fast = (speed != Speed::Times(1.0)).then(|| format!("Speed {}.", text::speed(speed)));
+    let first = std::iter::once(question).chain(fast).chain(torn.or(slack)).chain(in_zone);
+    let is_done = model.live.run.position.pulses_until_s.is_some();
+    let goes_on = if is_done { (ONLY_PULSES.into(), None) } else { (moves(model), continues(model)) };
+    first.chain([goes_on.0]).chain(goes_on.1).collect()
+}
+
 /// The clauses of the open question, with or without the progress of its estimate.
 fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
     let clauses = match &model.ui.overlay {
@@ -148,18 +162,7 @@ fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
             .chain(begins(model))
             .collect()
         }
-        Overlay::Confirm(Ask::Resume) => {
-            let question = "Resume? The robot will move. <accept>: resume, <cancel>: cancel.".into();
-            let in_zone = model.live.run.is_in_zone().then(|| IN_ZONE.to_owned());
-            let torn = model.live.run.is_tether_broken().then(|| TETHER_BROKEN.to_owned());
-            let slack = model.live.run.is_tether_slack().then(|| TETHER_SLACK.to_owned());
-            let speed = model.live.speed;
-            let fast = (speed != Speed::Times(1.0)).then(|| format!("Speed {}.", text::speed(speed)));
-            let first = std::iter::once(question).chain(fast).chain(torn.or(slack)).chain(in_zone);
-            let is_done = model.live.run.position.pulses_until_s.is_some();
-            let goes_on = if is_done { (ONLY_PULSES.into(), None) } else { (moves(model), continues(model)) };
-            first.chain([goes_on.0]).chain(goes_on.1).collect()
-        }
+        Overlay::Confirm(Ask::Resume) => resumption(model),
         Overlay::Confirm(Ask::FlyUncertified) => uncertified(model.live.run.phase()),
         Overlay::Confirm(Ask::Swap(choice)) => {
             let next = text::fit(&choice.id, 18);

@@ -51,7 +51,7 @@ fn the_time_left_of_a_drive_back_is_that_of_the_way_and_not_of_the_plan() {
 #[test]
 fn a_drive_back_is_no_progress_along_the_plan_although_it_crosses_its_lanes() {
     let mut screen = driving_back();
-    let before = screen.model.live.run.progress.clone().expect("lanes were driven");
+    let before = screen.model.live.run.progress.expect("lanes were driven");
     let crossed = EventKind::Progressed {
         done: before.done + 0.3,
         along_m: Some(900.0),
@@ -63,7 +63,7 @@ fn a_drive_back_is_no_progress_along_the_plan_although_it_crosses_its_lanes() {
     };
     let events = vec![screen.mission.now(crossed)];
     screen.hear(RunMsg::Events(events));
-    let after = screen.model.live.run.progress.clone().expect("it is kept");
+    let after = screen.model.live.run.progress.expect("it is kept");
     assert_eq!((after.done, after.along_m, after.target), (before.done, before.along_m, before.target));
     assert!((after.covered_reachable - 0.5).abs() < 1e-12, "floor may be scanned on the way");
 }

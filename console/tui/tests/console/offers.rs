@@ -40,10 +40,11 @@ fn during_a_mission_nothing_is_offered_that_enter_refuses() {
 
 #[test]
 fn tab_is_in_the_line_of_keys_where_panes_have_no_keys_of_their_own() {
-    for (screen, ways) in [(Screen::idle(), ["1", "2", "3"]), (Screen::running(), ["3", "2", "5"])] {
+    let make: [fn() -> Screen; 2] = [Screen::idle, Screen::running];
+    for (screen, ways) in make.into_iter().zip([["1", "2", "3"], ["3", "2", "5"]]) {
         for way in ways {
             for size in [(60, 16), (80, 24)] {
-                let mut screen = screen.clone();
+                let mut screen = screen();
                 screen.send(Msg::Found(Box::new(found())));
                 screen.send(Msg::Resize { width: size.0, height: size.1 });
                 screen.type_text(way);

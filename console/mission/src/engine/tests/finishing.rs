@@ -7,7 +7,7 @@ use positioning::PulseError;
 /// A mission to its goal whose stations exchange pulses after a rest.
 fn with_pulses(rest_s: f64, time_limit_s: f64) -> Flight {
     let locating = Locating { pulse_rest_s: Some(rest_s), ..config().locating };
-    let mut flight = Flight::new(MissionConfig { locating, time_limit_s, ..config() });
+    let mut flight = Flight::new(MissionConfig { time_limit_s, locating, ..config() });
     flight.pulse = true;
     flight.tick(&[Order::Start]);
     flight

@@ -251,7 +251,9 @@ impl Way {
         let mut session = calibration(stations, is_free);
         let mut all = Vec::new();
         for (k, (at, motions)) in self.0.iter().enumerate() {
-            motions.iter().for_each(|(odometry, heading_rad)| session.predict(odometry, *heading_rad));
+            for (odometry, heading_rad) in motions {
+                session.predict(odometry, *heading_rad);
+            }
             let own_m = if k >= from { error_m } else { 0.0 };
             let sets = heard(stations, *at, (is_free, wrong, own_m), rng);
             let news = session.take(&sets, near(*at, rng), k as f64);

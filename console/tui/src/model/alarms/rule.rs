@@ -77,9 +77,6 @@ pub fn rule(cause: &Cause, severity: Severity, context: Context) -> Rule {
         }
         (Cause::PositionLost | Cause::Contradiction, _) => rule(Severity::Crit, CYCLE_S, 0.0),
         (Cause::NotProtected, _) => rule(Severity::Warn, CYCLE_S, 0.0),
-        (Cause::Bias(_) | Cause::NotSeparable | Cause::Pulses | Cause::DeadChannel, _) => {
-            at_once(Severity::Warn)
-        }
         (Cause::NoFix | Cause::Station(_), _) => rule(Severity::Watch, CYCLE_S, 0.0),
         // A refused plan is never run. While the robot is under way, the mission has a second one made; only if that is
         // refused, too, the robot is held for it.
@@ -87,9 +84,11 @@ pub fn rule(cause: &Cause, severity: Severity, context: Context) -> Rule {
             at_once(Severity::Watch)
         }
         // Without a planner, a stationary robot only stays where it is.
-        (Cause::Certificate, _) | (Cause::Planner, Context::Planning | Context::Held) => {
-            at_once(Severity::Warn)
-        }
+        (
+            Cause::Certificate | Cause::Bias(_) | Cause::NotSeparable | Cause::Pulses | Cause::DeadChannel,
+            _,
+        )
+        | (Cause::Planner, Context::Planning | Context::Held) => at_once(Severity::Warn),
         // A tether that is only near a limit needs no action at once; one that is at its limit holds the robot.
         (Cause::Tether(word), _) if has_own_limit(word) && severity < Severity::Crit => {
             rule(Severity::Warn, CYCLE_S, TURN_S)
