@@ -209,7 +209,7 @@ impl Run {
             return;
         };
         self.scanned_history.add(event.t_s, 100.0 * covered_reachable);
-        // A drive back leads along lanes that it does not scan: it is no progress along the plan.
+        // A drive back crosses lanes without scanning them, so it does not advance the plan.
         let kept = self.progress.take().filter(|_| self.phase().is_return());
         let kept = kept.map(|kept| (kept.done, kept.along_m, kept.cross_track_m, kept.target));
         let (done, along_m, cross_track_m, target) =

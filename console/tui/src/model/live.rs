@@ -277,8 +277,8 @@ impl Live {
         (area_m2 > 0.0).then(|| (area_m2, stations.join(" ")))
     }
 
-    /// The middle of the largest floor that is in doubt because of a station, metres, tank frame; `None` if there is no such
-    /// floor.
+    /// The middle of the largest floor that a station has put in doubt, metres, tank frame; `None` if the station has put none
+    /// in doubt.
     pub fn place_in_doubt(&self, station: StationId) -> Option<Point> {
         let name = self.run.station_name(station);
         let own = self.in_doubt.iter().filter(|doubt| doubt.floor.station == name && doubt.at.is_some());

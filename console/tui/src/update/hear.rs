@@ -144,7 +144,7 @@ fn take(model: &mut Model, event: &Event) {
     withdraw_offer(model);
 }
 
-/// Withdraws the question about a better plan that is no longer on offer.
+/// Withdraws the question about a better plan whose offer has ended.
 fn withdraw_offer(model: &mut Model) {
     if matches!(model.ui.overlay, Overlay::Confirm(Ask::TakePlan)) && model.live.run.planning.offer.is_none()
     {
