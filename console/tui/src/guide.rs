@@ -25,7 +25,7 @@ pub fn name(cause: &Cause, of: &Run) -> String {
         Cause::NotProtected => "position not protected".into(),
         Cause::Bias(id) => format!("station {} biased", of.station_name(*id).trim_start_matches("station ")),
         Cause::NotSeparable => "station bias not separable".into(),
-        Cause::Pulses => "pulse test disagrees".into(),
+        Cause::Pulses => "pulse test not passed".into(),
         Cause::NoFix => "no position fix".into(),
         Cause::DeadChannel => "channel dead".into(),
         Cause::Station(id) => {

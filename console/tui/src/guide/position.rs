@@ -68,11 +68,11 @@ pub(super) const NOT_SEPARABLE: Guide = Guide {
 };
 
 pub(super) const PULSES: Guide = Guide {
-    cause: "The pulses that the stations exchanged do not fit their surveyed places: a station is not where it was \
-    surveyed, or its sensor or channel is faulty. Or too few pulses were heard for a result.",
+    cause: "The log says which: the pulses do not fit the surveyed places of the stations (a station, its sensor or its \
+    channel is faulty), the clock of a station has changed, or too few pulses came.",
     holds: "",
-    effect: "The pulses of this test do not correct the ranges. If an earlier test agreed, it stays in use. Until a test \
-    agrees, position errors, protection levels and guaranteed floor do not count.",
+    effect: "If the pulses contradict the survey or a clock has changed, position errors, protection levels and guaranteed \
+    floor do not count, from the last test that agreed until one agrees again. If none came, this time is unchecked.",
     remedies: &[
         check("Check the place and the sensor of the station that the log names."),
         check("Exclude this station: `:exclude` and its name."),
