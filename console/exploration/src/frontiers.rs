@@ -23,8 +23,9 @@ pub struct Frontier {
 }
 
 impl Ways<'_> {
-    /// The frontiers that the hull can drive to, the nearest first.
-    pub fn frontiers(&self) -> Vec<Frontier> {
+    /// The frontiers that the hull can drive to, the nearest first. Each one is driven to at the place with the cheapest way
+    /// that `is_worth` accepts: a frontier may be long, and one of its places may have been reached in vain.
+    pub fn frontiers(&self, is_worth: impl Fn(Point) -> bool) -> Vec<Frontier> {
         let grid = self.grid();
         let edge_m = (EDGE * grid.cell_m) as f32;
         let solid_m = distances_m(grid, |cell| self.of.is_solid(cell));
@@ -52,7 +53,8 @@ impl Ways<'_> {
             if length_m < LEAST_M {
                 continue;
             }
-            let nearest = cells.iter().filter_map(|cell| self.place_before(*cell));
+            let places = cells.iter().filter_map(|cell| self.place_before(*cell));
+            let nearest = places.filter(|(cell, _)| is_worth(grid.center(*cell)));
             let nearest = nearest.min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
             frontiers.extend(nearest.map(|(cell, cost_m)| Frontier {
                 at: grid.center(cell),

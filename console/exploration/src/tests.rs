@@ -99,7 +99,7 @@ impl Tank {
         for _ in 0..300 {
             let ways = exploration.ways(pose.position, ROOM_M, std::iter::empty());
             let views = || exploration.views(&ways).into_iter().map(|view| view.at);
-            let goals = ways.frontiers().into_iter().map(|frontier| frontier.at).chain(views());
+            let goals = ways.frontiers(|_| true).into_iter().map(|frontier| frontier.at).chain(views());
             let Some(goal) = goals.into_iter().find(|goal| !tried.contains(goal)) else { break };
             tried.push(goal);
             let way = ways.to(goal).unwrap();
@@ -133,6 +133,19 @@ impl Tank {
         }
         both / either
     }
+}
+
+#[test]
+fn a_frontier_that_was_reached_in_vain_is_driven_to_elsewhere() {
+    let mut tank = Tank::new(9.0, &[], 3);
+    let mut exploration = Exploration::new(&tank.boundary, SCANNING);
+    let pose = Pose::new(0.0, 0.0, 0.0);
+    (0..3).for_each(|step| tank.look(&mut exploration, &pose, step));
+    let ways = exploration.ways(pose.position, ROOM_M, std::iter::empty());
+    // The only frontier is the limit of what the scanner shows, all around.
+    let [all] = ways.frontiers(|_| true)[..] else { panic!("{:?}", ways.frontiers(|_| true)) };
+    let [other] = ways.frontiers(|at| (at - all.at).norm() > 0.5)[..] else { panic!("left out") };
+    assert!(other.length_m == all.length_m && (other.at - all.at).norm() > 0.5, "{all:?} {other:?}");
 }
 
 #[test]

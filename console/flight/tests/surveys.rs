@@ -111,6 +111,8 @@ struct Result {
     overlap: f64,
     explored: f64,
     collisions: usize,
+    /// Smallest distance of the hull from anything solid, metres.
+    clearance_m: f64,
     /// Longest cable and largest wrap on one object, metres and radians.
     cable: (f64, f64),
     center_max_m: f64,
@@ -136,6 +138,10 @@ impl Result {
             _ => None,
         });
         let collided = |event: &&Event| matches!(event.kind, EventKind::Truth { collided: true, .. });
+        let clearance_m = events.iter().filter_map(|event| match &event.kind {
+            EventKind::Truth { clearance_m, .. } => Some(*clearance_m),
+            _ => None,
+        });
         let cable = events.iter().filter_map(|event| match &event.kind {
             EventKind::TetherTruth { length_m, wrap_max_rad, .. } => Some((*length_m, *wrap_max_rad)),
             _ => None,
@@ -149,6 +155,7 @@ impl Result {
             overlap: overlap(&scenario.sim.world, &map),
             explored: map.explored,
             collisions: events.iter().filter(collided).count(),
+            clearance_m: clearance_m.fold(f64::INFINITY, f64::min),
             cable: cable.fold((0.0, 0.0), |most: (f64, f64), (m, rad)| (most.0.max(m), most.1.max(rad))),
             center_max_m: matched.iter().map(|error| error.0).fold(0.0, f64::max),
             radius_max_m: matched.iter().map(|error| error.1).fold(0.0, f64::max),
@@ -238,6 +245,16 @@ fn a_scanner_with_a_narrow_view_is_turned_around_first() {
     });
     let (outcome, reason) = end.unwrap();
     assert!(outcome == Outcome::Stuck && reason.contains("no free floor with room for the hull"), "{reason}");
+}
+
+/// In this tank, the way home follows the tether closely round a column. With little clearance, the noise of the scanner
+/// could stop the robot there.
+#[test]
+fn the_way_home_along_the_tether_keeps_room_for_the_guard() {
+    let scenario = parsed(&tank(20).replace("clearance_m = 0.1", "clearance_m = 0.05"));
+    let result = Result::of(&scenario, &flown(&scenario));
+    assert_eq!(result.outcome.as_ref().map(|outcome| outcome.0), Some(Outcome::Complete), "{result:?}");
+    assert!(result.clearance_m > 0.05, "{result:?}");
 }
 
 #[test]

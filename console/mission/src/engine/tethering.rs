@@ -7,6 +7,10 @@ use crate::{
 };
 use world::{Point, Readings};
 
+/// Room beside the clearance, metres, for the errors with which a way is followed and for the noise of the scanner: the raw
+/// scan stops the robot before it comes closer than the clearance needs.
+const GUARD_SPARE_M: f64 = 0.05;
+
 impl Known {
     /// Moves the cable along with the robot; returns the limit reached in this tick, or the break of a torn cable.
     pub(super) fn drag_tether(
@@ -83,7 +87,13 @@ impl Known {
     pub(super) fn widest(&self, way: impl FnMut(f64) -> Option<Vec<Point>>) -> Option<Vec<Point>> {
         let rooms =
             [1.0, 0.5, 0.0].map(|share| share * self.config.clearance_m + self.config.limits.radius_m);
-        rooms.into_iter().find_map(way)
+        let is_guarded = self.config.guard_reaction_s.is_some();
+        is_guarded.then(|| self.guarded_room_m()).into_iter().chain(rooms).find_map(way)
+    }
+
+    /// Room for the hull's centre on a way on which the guard does not stop the robot, metres.
+    pub(super) fn guarded_room_m(&self) -> f64 {
+        self.config.room_m() + GUARD_SPARE_M
     }
 }
 

@@ -94,6 +94,8 @@ impl Sent {
 /// The scanned points near a robot, and how it brakes.
 pub(crate) struct Guard<'a> {
     echoes: Vec<Echo>,
+    /// The points with less noise, by which the robot passes beside something; `None` if all points count as they are.
+    evened: Option<Vec<Echo>>,
     here: &'a Here,
     /// The motion before a command that is sent now takes effect, oldest first.
     sent: &'a [Sent],
@@ -103,9 +105,13 @@ impl<'a> Guard<'a> {
     /// Creates the guard for one tick. `sent` is the motion of earlier ticks that the vehicle may still have to carry
     /// out.
     pub(crate) fn new(points: &[Point], here: &'a Here, sent: &'a [Sent]) -> Self {
-        let echo =
-            |point: &Point| Echo { distance_m: point.coords.norm(), direction_rad: point.y.atan2(point.x) };
-        Self { echoes: points.iter().map(echo).collect(), here, sent }
+        Self { echoes: echoes(points), evened: None, here, sent }
+    }
+
+    /// The same guard, with points that scatter less. The robot still brakes for every single point on its course, but the
+    /// noise of points beside its course does not stop it.
+    pub(crate) fn passing_by(self, evened: Option<&[Point]>) -> Self {
+        Self { evened: evened.map(echoes), ..self }
     }
 
     /// Limits a command so that the robot can stop in time.
@@ -141,13 +147,20 @@ impl<'a> Guard<'a> {
             _ if room_m > 0.0 => SCAN_ROOM_M.min(ROOM_SHARE * room_m),
             _ => room_m - TOUCH_M,
         };
-        self.nearest(momentum, drive, |echo, sector| {
+        let is_on_course =
+            |echo: &Echo, sector: &Sector| Sector { way_m: f64::MAX, ..*sector }.distance_m(echo) < hull_m;
+        let needed_m = |echo: &Echo, sector: &Sector| {
             if echo.is_unresolved() {
                 return hull_m;
             }
-            let is_on_course = Sector { way_m: f64::MAX, ..*sector }.distance_m(echo) < hull_m;
-            hull_m + kept_m(echo.distance_m - hull_m, is_on_course)
-        })
+            hull_m + kept_m(echo.distance_m - hull_m, is_on_course(echo, sector))
+        };
+        let Some(evened) = &self.evened else { return self.nearest(&self.echoes, momentum, drive, needed_m) };
+        let on_course = self.nearest(&self.echoes, momentum, drive, |echo, sector| {
+            if echo.is_unresolved() || is_on_course(echo, sector) { needed_m(echo, sector) } else { 0.0 }
+        });
+        let beside = self.nearest(evened, momentum, drive, needed_m);
+        on_course.into_iter().chain(beside).min_by(|one, other| one.0.total_cmp(&other.0))
     }
 
     /// Whether the hull could touch a point although the robot brakes as hard as it can.
@@ -156,11 +169,12 @@ impl<'a> Guard<'a> {
         let needed_m = |echo: &Echo| {
             if echo.is_unresolved() { hull_m } else { hull_m.min(echo.distance_m - TOUCH_M) }
         };
-        self.nearest(momentum, Drive::STILL, |echo, _| needed_m(echo)).is_some()
+        self.nearest(&self.echoes, momentum, Drive::STILL, |echo, _| needed_m(echo)).is_some()
     }
 
     fn nearest(
         &self,
+        echoes: &[Echo],
         momentum: &Momentum,
         drive: Drive,
         needed_m: impl Fn(&Echo, &Sector) -> f64,
@@ -169,7 +183,7 @@ impl<'a> Guard<'a> {
         let is_in_the_way = |echo: &&Echo| {
             sectors.iter().flatten().any(|sector| sector.distance_m(echo) < needed_m(echo, sector))
         };
-        let found = self.echoes.iter().filter(is_in_the_way);
+        let found = echoes.iter().filter(is_in_the_way);
         let nearest = found.min_by(|one, other| one.distance_m.total_cmp(&other.distance_m))?;
         Some((nearest.distance_m - self.here.limits.radius_m, nearest.direction_rad))
     }
@@ -210,6 +224,12 @@ impl<'a> Guard<'a> {
         }
         [forward.then(|| sector(0.0)), backward.then(|| sector(PI))]
     }
+}
+
+fn echoes(points: &[Point]) -> Vec<Echo> {
+    let echo =
+        |point: &Point| Echo { distance_m: point.coords.norm(), direction_rad: point.y.atan2(point.x) };
+    points.iter().map(echo).collect()
 }
 
 #[cfg(test)]

@@ -1,12 +1,6 @@
 //! The guard by the raw scan: the scanned points, and when the robot is held because of them.
 
-use super::{
-    super::Mission,
-    super::known::Known,
-    scan_fault::{MAX_AGE_S, ScanFault},
-    speed,
-    state::Limited,
-};
+use super::{super::Mission, super::known::Known, scan_fault::ScanFault, speed, state::Limited};
 use crate::{
     config::MissionConfig,
     event::{EventKind, rounded_command},
@@ -16,7 +10,7 @@ use crate::{
 use geometry::{Braking, Drive};
 use perception::Sensor;
 use planner_api::Command;
-use world::{Odometry, Point, Readings, Scan, scan::carried};
+use world::{Point, Readings, Scan, scan::carried};
 
 /// Maximum number of ticks for which the robot has moved since its readings arrived.
 const READING_TICKS: usize = 1;
@@ -30,6 +24,9 @@ const KEPT_M: f64 = 2.0;
 const LATE_SCANS: u32 = 2;
 /// The robot is held if the guard has kept it from moving for this long, seconds.
 const BLOCKED_S: f64 = 2.0;
+/// A robot that single points have kept from moving for this long, seconds, stands still; it goes on by the points with less
+/// noise until all points let it pass.
+const NOISE_S: f64 = 1.0;
 /// Share of the requested speed below which the robot does not move.
 const BLOCKED_SHARE: f64 = 0.1;
 /// The guard is reported after it has limited the robot for this long, seconds.
@@ -40,9 +37,9 @@ const NAMED_AFTER_S: f64 = 0.5;
 pub(in crate::engine) struct ScanGuard {
     /// The points of the last scan, in the robot frame now.
     points: Vec<Point>,
-    /// The last scan and the motion since then, if the noise of the scanner is known: the robot brakes for every single
-    /// point, but noise alone does not hold the robot.
-    noisy: Option<Noisy>,
+    /// The same points with less noise, if the noise of the scanner is known: the robot brakes for every single point on
+    /// its course, but noise alone does not hold the robot.
+    evened: Option<Vec<Point>>,
     /// Whether a scan has arrived.
     pub(super) has_scan: bool,
     /// Age of the last scan, or of the mission before the first one, seconds.
@@ -59,6 +56,8 @@ pub(in crate::engine) struct ScanGuard {
     is_late: bool,
     is_late_now: bool,
     blocked_s: f64,
+    /// Whether the robot goes on by the points with less noise, because single points had stopped it.
+    evens: bool,
     limited: Limited,
     /// The fault of the scans that was reported last.
     pub(super) told_fault: Option<ScanFault>,
@@ -78,24 +77,6 @@ fn ticks(age_s: f64, tick_s: f64) -> usize {
     (age_s / tick_s).ceil() as usize + READING_TICKS
 }
 
-/// A scan from which noise can be removed.
-#[derive(Debug, Clone)]
-struct Noisy {
-    scan: Scan,
-    sigma_m: f64,
-    /// The motion of each tick since the scan.
-    moved: Vec<Odometry>,
-}
-
-impl Noisy {
-    /// The points with less noise within a distance in metres from the robot, robot frame now.
-    fn evened(&self, far_m: f64) -> Vec<Point> {
-        let now = |point: Point| self.moved.iter().fold(point, carried);
-        let points = near(&self.scan.evened(self.sigma_m), far_m);
-        points.into_iter().map(now).collect()
-    }
-}
-
 /// The points of a scan within a distance in metres from the robot.
 fn near(scan: &Scan, far_m: f64) -> Vec<Point> {
     scan.points().filter(|point| point.coords.norm() <= far_m).collect()
@@ -113,16 +94,12 @@ impl Known {
         guard.reading_age_s = age_s.min(READING_MAX_AGE_S);
         if let Some(scan) = &readings.scan {
             guard.points = near(scan, far_m);
-            guard.noisy = sigma_m.map(|sigma_m| Noisy { scan: scan.clone(), sigma_m, moved: Vec::new() });
+            guard.evened = sigma_m.map(|sigma_m| near(&scan.evened(sigma_m), far_m));
             (guard.has_scan, guard.age_s) = (true, 0.0);
             return;
         }
-        for point in &mut guard.points {
+        for point in guard.points.iter_mut().chain(guard.evened.iter_mut().flatten()) {
             *point = carried(*point, &readings.odometry);
-        }
-        // A scan that is too old holds the robot, whatever it shows.
-        if let Some(noisy) = guard.noisy.as_mut().filter(|_| guard.age_s <= MAX_AGE_S) {
-            noisy.moved.push(readings.odometry);
         }
         guard.age_s += self.config.tick_s;
     }
@@ -139,19 +116,24 @@ impl Known {
             return Command { drive: Drive::STILL, ..command };
         }
         let (here, tick_s) = (self.as_governed(), self.config.tick_s);
-        let state = &self.scan_guard;
-        let guard = Guard::new(&state.points, &here, state.sent_for(reaction_s, tick_s));
-        let Guarded { drive, before, is_late } = guard.guarded(&self.governor.momentum, command.drive);
-        let evened =
-            state.noisy.as_ref().filter(|_| is_late).map(|noisy| noisy.evened(reach_m(&self.config)));
+        let (state, momentum) = (&self.scan_guard, &self.governor.momentum);
+        let sent = state.sent_for(reaction_s, tick_s);
+        let guard = Guard::new(&state.points, &here, sent).passing_by(state.evened.as_deref());
+        let by_all = guard.guarded(momentum, command.drive);
+        let is_late = by_all.is_late;
+        let evens = by_all.before.is_some() && (state.evens || state.blocked_s >= NOISE_S);
+        let Guarded { drive, before, .. } = match &state.evened {
+            Some(evened) if evens => Guard::new(evened, &here, sent).guarded(momentum, command.drive),
+            _ => by_all,
+        };
         let touches = |reaction_s: f64| {
-            let points = evened.as_ref().unwrap_or(&state.points);
-            Guard::new(points, &here, state.sent_for(reaction_s, tick_s)).touches(&self.governor.momentum)
+            let points = state.evened.as_ref().unwrap_or(&state.points);
+            Guard::new(points, &here, state.sent_for(reaction_s, tick_s)).touches(momentum)
         };
         let is_late = is_late && touches(reaction_s);
         let is_certain = is_late && touches(0.0);
         let state = &mut self.scan_guard;
-        state.before = before;
+        (state.before, state.evens) = (before, evens);
         state.is_late_now = is_late && !std::mem::replace(&mut state.is_late, is_late);
         // Between two scans, the points are the same with the same noise.
         let is_new = state.age_s == 0.0 || state.late_scans == 0;

@@ -13,9 +13,6 @@ const SAME_M: f64 = 0.3;
 const MOST_TIMES: usize = 2;
 /// Time after which a goal that the tether does not reach is tried again, seconds: more of the floor is known by then.
 const AGAIN_S: f64 = 60.0;
-/// Room beside the clearance, metres, for the errors with which a way is followed: the raw scan stops the robot before it
-/// comes closer than the clearance needs.
-const SPARE_M: f64 = 0.05;
 /// Distance between places on the return path from which other ways to a goal are tried, metres.
 const STEP_M: f64 = 1.0;
 /// Remaining length of the way back, metres, below which goals that the tether did not reach are tried once more: almost
@@ -109,15 +106,15 @@ impl Known {
         self.refresh_ground();
         let solids = self.solids();
         let survey = self.survey.as_ref()?;
-        let ways = survey.exploration.ways(here, self.survey_room_m(), solids.iter());
+        let ways = survey.exploration.ways(here, self.guarded_room_m(), solids.iter());
         // Without room at the robot's place, the map is not complete enough to choose a way.
         let is_shut_in = ways.is_empty();
         if is_shut_in {
             self.mark_shut_in(survey.leg.is_none());
             return None;
         }
-        let all = ways.frontiers().into_iter().map(|frontier| frontier.at);
-        let open: Vec<Point> = all.filter(|goal| !survey.choice.is_tried(*goal)).collect();
+        let open = ways.frontiers(|goal| !survey.choice.is_tried(goal));
+        let open: Vec<Point> = open.into_iter().map(|frontier| frontier.at).collect();
         let leg = survey.leg.as_ref();
         let stays = leg.is_some_and(|leg| self.is_worth_going_on(leg, &open, &ways));
         let chosen = match leg.filter(|_| stays) {
@@ -215,7 +212,7 @@ impl Known {
         if !tether.can_reach_straight(goal) {
             return None;
         }
-        let from_goal = self.survey.as_ref()?.exploration.ways(goal, self.survey_room_m(), solids.iter());
+        let from_goal = self.survey.as_ref()?.exploration.ways(goal, self.guarded_room_m(), solids.iter());
         let taut = self.widest(|room_m| tether.return_path(self.cable_world(), room_m));
         let mut driven = vec![self.place_on_map()];
         driven.extend(tether.way_driven().iter().rev());
@@ -251,11 +248,6 @@ impl Known {
                 self.way_back().ok().map(|back| back.path).filter(|way| self.is_passable(way, ways, 0.0))
             })
             .or_else(|| self.way_back().ok().map(|back| back.path))
-    }
-
-    /// Room for the hull's centre on the ways of a survey, metres.
-    fn survey_room_m(&self) -> f64 {
-        self.config.room_m() + SPARE_M
     }
 
     /// Everything on the chart that the hull must not touch.
