@@ -9,6 +9,7 @@
 pub mod account;
 mod coverage;
 mod fields;
+mod own_map;
 mod positioning;
 mod registry;
 mod spiral;

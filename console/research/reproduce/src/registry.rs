@@ -1,7 +1,7 @@
 //! The list of all studies. Studies do not depend on the registry.
 
 use crate::{
-    account, coverage, fields, positioning, spiral,
+    account, coverage, fields, own_map, positioning, spiral,
     study::{Gallery, Result, Study, StudyError},
     surveys, tethers, traps,
 };
@@ -9,12 +9,13 @@ use mission::spelling::nearest;
 use std::path::Path;
 
 /// Every study, by subject.
-const STUDIES: [&[Study]; 7] = [
+const STUDIES: [&[Study]; 8] = [
     spiral::STUDIES,
     traps::STUDIES,
     fields::STUDIES,
     positioning::STUDIES,
     coverage::STUDIES,
+    own_map::STUDIES,
     surveys::STUDIES,
     tethers::STUDIES,
 ];
@@ -54,7 +55,10 @@ pub fn list() -> String {
 /// # Errors
 /// The study has nothing to draw, or the folder cannot be created.
 pub fn gallery(study: &Study, folder: &Path) -> Result<Gallery> {
-    let without = || positioning::STUDIES.iter().chain(surveys::STUDIES).chain(tethers::STUDIES);
+    let without = || {
+        let undrawn = [own_map::STUDIES, positioning::STUDIES, surveys::STUDIES, tethers::STUDIES];
+        undrawn.into_iter().flatten()
+    };
     let draws = |study: &Study| without().all(|other| other.name != study.name);
     if !draws(study) {
         let drawn: Vec<String> =

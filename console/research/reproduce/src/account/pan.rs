@@ -14,9 +14,9 @@ const ITEMS: &[Item] = &[
     item(
         "Sec. III, maps",
         "mapping by Cartographer",
-        Absent,
-        "",
-        "no mapping; instead, maps, drawings and lists of columns can be imported",
+        Ours,
+        "tankops reproduce pan-own-map",
+        "a survey with positions from acoustic emission instead of Cartographer; maps and drawings can also be imported",
     ),
     item(
         "Sec. III.A, Figs 1, 2",

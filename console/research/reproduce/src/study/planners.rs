@@ -4,10 +4,12 @@ use super::{
     error::{Result, StudyError},
     method::Method,
 };
+use flight::{answers::InOrder, hosts};
 use mission::{Cause, Fault};
 use nalgebra::Matrix3;
 use planner_api::{Code, Plan, PlanRequest, PoseEstimate, Reason, Site, Task};
 use planner_host::{BlockingHost, HostConfig, PluginDirs};
+use scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
 use world::{Point, Pose};
@@ -65,6 +67,11 @@ impl Planners {
     /// Uses the planners from these folders.
     pub(crate) fn new(dirs: &PluginDirs) -> Self {
         Self { dirs: dirs.clone() }
+    }
+
+    /// The answers of these planners to a whole mission.
+    pub(crate) fn answers(&self, scenario: &Scenario) -> InOrder {
+        InOrder::new(hosts::host(scenario, &self.dirs))
     }
 
     /// Creates a planner for the site, without any state from earlier requests.
