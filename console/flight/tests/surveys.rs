@@ -247,6 +247,71 @@ fn a_scanner_with_a_narrow_view_is_turned_around_first() {
     assert!(outcome == Outcome::Stuck && reason.contains("no free floor with room for the hull"), "{reason}");
 }
 
+/// Occupancy maps of rooms; `SURVEY_MAPS=one.yaml:other.yaml` chooses others.
+fn maps() -> Vec<String> {
+    let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/maps/laboratory.yaml");
+    let chosen = std::env::var("SURVEY_MAPS").unwrap_or_else(|_| shipped.into());
+    chosen.split(':').map(str::to_owned).collect()
+}
+
+/// A survey of a room of which only the rectangle around its floor is known. The robot starts where it has the most room.
+fn room(map: &str) -> Scenario {
+    let floor = import::OccupancyMap::read(map.as_ref()).unwrap();
+    let floor = import::MapFloor::new(&floor, None, None).unwrap();
+    let solid = |vertices: Vec<Point>| world::Obstacle {
+        id: world::ObstacleId(1),
+        name: "solid".into(),
+        shape: Shape::Polygon { vertices },
+        known: true,
+    };
+    let solids: Vec<_> = floor.pieces.into_iter().map(solid).collect();
+    let solid = ObstacleMap::new(&floor.wall, &solids);
+    let (low, high) = floor.wall.bounds();
+    let n = |side_m: f64| (side_m / 0.25) as u32;
+    let across = (high - low).map(n);
+    let places = (1..across.x).flat_map(|x| (1..across.y).map(move |y| (x, y)));
+    let places = places.map(|(x, y)| low + world::Vector::new(f64::from(x), f64::from(y)) * 0.25);
+    let start = places.max_by(|a, b| solid.clearance_m(*a).total_cmp(&solid.clearance_m(*b))).unwrap();
+    let corners =
+        [low, Point::new(high.x, low.y), high, Point::new(low.x, high.y), Point::new(high.x, low.y)];
+    let middle = nalgebra::center(&low, &high);
+    let stations: Vec<String> = (0..5)
+        .map(|k: usize| {
+            let at = if k == 4 { nalgebra::center(&low, &corners[3]) } else { corners[k] };
+            let at = at + (middle - at) * 1e-3;
+            format!("{{ name = \"S{k}\", at_m = [{:.4}, {:.4}] }}", at.x, at.y)
+        })
+        .collect();
+    let text = tank(1);
+    let (_, robot) = text.split_once("[robot]").unwrap();
+    let (head, rest) = robot.split_once("stations = [").unwrap();
+    let (_, tail) = rest.split_once("]\n\n").unwrap();
+    let head = head.replace("start_m = [0.0, 0.0]", &format!("start_m = [{:.3}, {:.3}]", start.x, start.y));
+    let text = format!(
+        "name = \"room\"\nseed = 1\n\n[tank]\nmap = {map:?}\n\n[robot]{head}stations = [{}]\n\n{}",
+        stations.join(", "),
+        tail.replace("3600.0", "14400.0")
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("room.toml");
+    std::fs::write(&file, text).unwrap();
+    let scenario = Scenario::read_with(&file, &scenario::Settings::default());
+    let mut scenario = scenario.unwrap_or_else(|errors| panic!("{}", errors.render()));
+    scenario.sim.world.obstacles.iter_mut().for_each(|obstacle| obstacle.known = false);
+    scenario
+}
+
+#[test]
+fn a_room_is_mapped_without_its_drawing() {
+    for map in maps() {
+        let scenario = room(&map);
+        let result = Result::of(&scenario, &flown(&scenario));
+        println!("{map}: {result:?}");
+        assert_eq!(result.outcome.as_ref().map(|outcome| outcome.0), Some(Outcome::Complete), "{map}");
+        assert!(result.overlap >= 0.97 && result.collisions == 0, "{map}: {result:?}");
+    }
+}
+
 /// In this tank, the way home follows the tether closely round a column. With little clearance, the noise of the scanner
 /// could stop the robot there.
 #[test]
