@@ -57,6 +57,10 @@ fn read(args: &ImportArgs, input: &Input) -> anyhow::Result<FloorPlan> {
             })?;
             columns::read(input, radius_m).map_err(|errors| bad_input(listed(&errors)))
         }
+        InputKind::Scans => Err(bad_input(format!(
+            "{}: a log of scans is not a drawing; make a map of it with `tankops map-of`",
+            input.name
+        ))),
         InputKind::Drawing => {
             let unit_m = args.units.map(Into::into);
             let layers = drawing::Layers::new(args.layer.clone());

@@ -1,10 +1,13 @@
-//! `tankops map-of`: writes the map that a survey has made.
+//! `tankops map-of`: writes the map that a survey has made, or the map of recorded scans.
+
+mod recorded;
 
 use crate::{
     cli::MapOfArgs,
     output::{check_free, write_file},
 };
 use campaign::shell;
+use exploration::SurveyMap;
 use flight::{
     failure::{COMPLETE, bad_input, not_written},
     planners::{self, COVERAGE_PLANNER},
@@ -19,6 +22,10 @@ use world::coverage::percent_text;
 
 /// Runs `tankops map-of RUN -o MAP`.
 pub(crate) fn map_of(args: &MapOfArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
+    if args.run.is_file() {
+        recorded::map_of_log(args)?;
+        return Ok(ExitCode::from(COMPLETE));
+    }
     let folder = find(&args.run, &args.logs.folder())?;
     let survey = past_survey(&folder)?;
     let run = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -35,18 +42,24 @@ pub(crate) fn map_of(args: &MapOfArgs, plugins: &PluginDirs) -> anyhow::Result<E
 }
 
 fn ros_map(args: &MapOfArgs, survey: &PastSurvey) -> anyhow::Result<()> {
+    ros_files(args, &survey.map)?;
+    let image = args.output.with_extension("pgm");
+    say(&format!("{} and {}: {}\n", args.output.display(), image.display(), human(survey)))?;
+    Ok(())
+}
+
+/// Writes a map as the two files of the ROS map server.
+fn ros_files(args: &MapOfArgs, map: &SurveyMap) -> anyhow::Result<()> {
     let image = args.output.with_extension("pgm");
     for file in [&args.output, &image] {
         check_free(file, Some(args.force), &[])?;
     }
     let name = image.file_name().unwrap_or_default().to_string_lossy();
-    let Some(map) = survey.map.ros(&name) else {
+    let Some(map) = map.ros(&name) else {
         return Err(bad_input("the map in the journal is damaged; run the survey again"));
     };
     write_whole(&image, &map.pgm).map_err(|error| not_written("the image of the map", &error, &image))?;
-    write_file("the map", &args.output, &map.yaml)?;
-    say(&format!("{} and {}: {}\n", args.output.display(), image.display(), human(survey)))?;
-    Ok(())
+    write_file("the map", &args.output, &map.yaml)
 }
 
 fn scenario(args: &MapOfArgs, survey: &PastSurvey, run: &str, plugins: &PluginDirs) -> anyhow::Result<()> {
@@ -74,11 +87,14 @@ fn scenario(args: &MapOfArgs, survey: &PastSurvey, run: &str, plugins: &PluginDi
 
 fn human(survey: &PastSurvey) -> String {
     let map = &survey.map;
-    let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     format!(
         "{} % of the floor seen, {}, {}",
         percent_text(map.explored, 1),
         counted(map.columns.len(), "column"),
         counted(map.others.len(), "other object")
     )
+}
+
+fn counted(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }

@@ -27,6 +27,8 @@ pub enum InputKind {
     Drawing,
     /// A list of columns.
     List,
+    /// A log of laser scans.
+    Scans,
 }
 
 impl Input {
@@ -42,9 +44,19 @@ impl Input {
         let kind = match suffix.as_str() {
             "dxf" => InputKind::Drawing,
             "csv" => InputKind::List,
-            _ => return Err(ImportError::of_file(path, "only .dxf and .csv files can be imported")),
+            "log" | "clf" => InputKind::Scans,
+            _ => {
+                let what =
+                    "only .dxf, .csv, .log and .clf files can be read: drawings, lists of columns, and scans";
+                return Err(ImportError::of_file(path, what));
+            }
         };
         Ok(Self { name: path.display().to_string(), bytes: read_file(path)?, kind: Some(kind) })
+    }
+
+    /// An input that was read elsewhere; its kind follows from its content.
+    pub fn of_bytes(name: &str, bytes: &[u8]) -> Self {
+        Self { name: name.into(), bytes: bytes.to_vec(), kind: None }
     }
 
     fn of_stdin() -> Result<Self, ImportError> {

@@ -18,6 +18,7 @@ mod problem;
 mod pulsing;
 mod repeats;
 mod rows;
+pub mod scan_log;
 mod tally;
 pub mod thickness;
 mod tool;

@@ -9,7 +9,9 @@ pub(crate) mod frame;
 pub mod plan;
 pub(crate) mod plates;
 pub(crate) mod polygons;
+mod scanned;
 pub(crate) mod sheet;
 pub(crate) mod trace;
 
 pub use floor::floor;
+pub use scanned::scanned;

@@ -106,12 +106,25 @@ pub(crate) struct ImportArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct MapOfArgs {
-    /// Run folder of a survey, or its name in the logs folder.
+    /// Run folder of a survey, or its name in the logs folder; or a log of laser scans of the CARMEN toolkit (.log, .clf)
+    /// with corrected poses.
     pub run: PathBuf,
     /// File to write: NAME.yaml for a map of the ROS map server (with its image NAME.pgm beside it), NAME.toml for a
-    /// scenario that scans the mapped floor.
+    /// scenario that scans the mapped floor (only of a survey).
     #[arg(short = 'o', long, value_name = "MAP")]
     pub output: PathBuf,
+    /// Draw the map of a log, with the obstacles that the tracker has found in its scans, to this file.
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+    /// Maximum distance that the scanner of a log can measure, in metres; a ray with a greater distance has no echo.
+    #[arg(long, value_name = "M", value_parser = length, default_value_t = 20.0)]
+    pub range: f64,
+    /// Standard deviation of the distances of a log, in metres.
+    #[arg(long, value_name = "M", value_parser = length, default_value_t = 0.03)]
+    pub sigma: f64,
+    /// Radius of the hull of the robot of a log, in metres; echoes from inside it are ignored.
+    #[arg(long, value_name = "M", value_parser = length, default_value_t = 0.2)]
+    pub hull: f64,
     /// Overwrite existing files.
     #[arg(long)]
     pub force: bool,

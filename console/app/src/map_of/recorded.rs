@@ -1,0 +1,63 @@
+//! The map of recorded scans.
+
+use super::{counted, ros_files};
+use crate::{
+    cli::MapOfArgs,
+    output::{check_free, write_file},
+};
+use ::import::{Input, InputKind, scan_log};
+use flight::failure::bad_input;
+use locate::scan_log::{Recorded, Shown, shown};
+use report::print::{say, say_line};
+use world::coverage::percent_text;
+
+/// Writes the map of a log of scans, and its picture if one is requested.
+pub(super) fn map_of_log(args: &MapOfArgs) -> anyhow::Result<()> {
+    let refused = |what: &str| bad_input(format!("{}: {what}", args.run.display()));
+    let files = [Some(&args.output), args.svg.as_ref()];
+    for file in files.into_iter().flatten() {
+        check_free(file, Some(args.force), &[&args.run])?;
+    }
+    let input = Input::read(&args.run).map_err(|error| bad_input(error.to_string()))?;
+    if input.kind() != InputKind::Scans {
+        return Err(refused(
+            "not a log of scans; make a scenario of a drawing or list with `tankops import`",
+        ));
+    }
+    if args.output.extension().is_some_and(|suffix| suffix == "toml") {
+        let remedy = "a log has no robot and no stations, so it gives no scenario; end the name with .yaml";
+        return Err(bad_input(format!("{}: {remedy}", args.output.display())));
+    }
+    let recorded = Recorded { sigma_m: args.sigma, range_m: args.range, hull_m: args.hull };
+    let log = scan_log::read(&input, recorded.range_m).map_err(|error| bad_input(error.to_string()))?;
+    let shown = shown(&log, &recorded);
+    ros_files(args, &shown.map)?;
+    if let Some(file) = &args.svg {
+        let shapes = shown.found.iter().map(|found| &found.shape);
+        let picture = report::drawing::scanned(&shown.boundary, &shown.map, shapes, &shown.way);
+        let picture = picture.ok_or_else(|| refused("the map could not be drawn"))?;
+        write_file("the picture", file, &picture)?;
+    }
+    for note in &log.notes {
+        say_line(&format!("note: {note}"))?;
+    }
+    Ok(say(&format!("{}: {}\n", args.output.display(), human(log.scans.len(), &shown)))?)
+}
+
+fn human(n_scans: usize, shown: &Shown) -> String {
+    let mut text = format!(
+        "{}, {} % of the rectangle seen, {}, {} on the map; the tracker found {}",
+        counted(n_scans, "scan"),
+        percent_text(shown.map.explored, 1),
+        counted(shown.map.columns.len(), "column"),
+        counted(shown.map.others.len(), "other object"),
+        counted(shown.found.len(), "obstacle"),
+    );
+    if shown.gone > 0 {
+        text.push_str(&format!(" that stayed, and {} that did not", shown.gone));
+    }
+    if let (n @ 1.., Some(reason)) = &shown.unusable {
+        text.push_str(&format!("; {} could not be used, the first because {reason}", counted(*n, "scan")));
+    }
+    text
+}
