@@ -167,7 +167,7 @@ impl EngineThread {
     fn fly(mut self) -> Option<Closed> {
         let mut pace = Pace::from(Instant::now());
         loop {
-            pace.rest(self.rests());
+            pace.rest(Instant::now(), self.rests(), self.flight.tick_length(), self.speed);
             let (mut orders, close) = self.wait_for(&pace);
             while pace.makes_up(Instant::now()) {
                 self.tick(Vec::new());
