@@ -55,6 +55,7 @@ fn estimate(length_m: f64) -> Estimate {
             wrap_total_max_rad: 1.2,
             end_length_m: 18.0,
             pull_max_n: None,
+            own_gap_m: None,
         }),
         accuracy_worst: Some(worst(0.17, 7.8, 4.0)),
         without_fix_m: 0.0,
