@@ -73,7 +73,8 @@ impl TakeUp {
         if readings.reel_pull_n.is_none() && self.most_n < IDLE * reel.pull_n {
             self.has_stopped = true;
         }
-        !self.has_stopped && !(is_too_weak && robot_n < IDLE * reel.pull_n)
+        let is_left_lying = is_too_weak && robot_n < IDLE * reel.pull_n;
+        !(self.has_stopped || is_left_lying)
     }
 
     /// Whether the reel has stopped, as far as it is known.
