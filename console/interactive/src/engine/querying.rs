@@ -2,7 +2,7 @@
 
 use super::{EngineThread, newest::Turn};
 use crate::inbox::RunOutbox;
-use mission::{Event, EventKind, Mission};
+use mission::{Event, EventKind, Mission, Phase};
 use std::thread;
 use tui::{Query, RunMsg};
 
@@ -20,7 +20,9 @@ impl EngineThread {
 
     /// Answers a query that waited until the robot stands.
     pub(super) fn answer_deferred(&mut self) {
-        if let Some(query) = self.deferred.take_if(|_| !self.flight.mission().is_braking()) {
+        let query = self.deferred.take_if(|_| !self.flight.mission().is_braking());
+        // A robot that has been resumed meanwhile has no way back.
+        if let Some(query) = query.filter(|_| matches!(self.flight.phase(), Phase::Held(_))) {
             self.query(query);
         }
     }
