@@ -10,7 +10,7 @@ use positioning::{AccuracyMap, Forecast};
 use serde::{Deserialize, Serialize};
 use world::{
     CoverageGrid, Floor, ObstacleMap, Point, Shape, World, polyline,
-    tether::{BACK_M, Bearing, Cable},
+    tether::{BACK_M, Bearing, Cable, OwnGap},
 };
 
 /// Distance between the points at which a path is evaluated, metres.
@@ -44,6 +44,10 @@ pub struct TetherEstimate {
     /// reel.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pull_max_n: Option<Worst>,
+    /// Least distance from the edge of the hull to its own taut tether beyond the last bend, on the way in, metres; absent if the
+    /// scenario does not describe the reel, or if the tether bends nowhere on the way in.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub own_gap_m: Option<Worst>,
 }
 
 /// The estimated results of a plan on the drawing.
@@ -124,6 +128,7 @@ fn tether(mission: &MissionConfig, drawing: &World, path: &[Point]) -> Option<Te
         wrap_total_max_rad: 0.0,
         end_length_m: 0.0,
         pull_max_n: drag.map(|_| none),
+        own_gap_m: drag.and_then(|_| own_gap(cable.clone(), path, mission.limits.radius_m)),
     };
     // The tether that is still out at the anchor counts, as in the certificate.
     let returns = path.last().is_some_and(|last| (*last - anchor).norm() <= BACK_M);
@@ -146,6 +151,11 @@ fn tether(mission: &MissionConfig, drawing: &World, path: &[Point]) -> Option<Te
     }
     estimate.end_length_m = cable.length_m();
     Some(estimate)
+}
+
+fn own_gap(cable: Cable, path: &[Point], hull_m: f64) -> Option<Worst> {
+    let OwnGap { gap_m, at } = OwnGap::along(cable, path, hull_m)?;
+    Some(Worst { value: gap_m, at })
 }
 
 /// Name of the obstacle with the largest wrap of a cable.
@@ -273,6 +283,45 @@ mod tests {
             (estimate.end_length_m - left_m).abs() < 0.01 && estimate.length_max.value >= left_m - 0.01,
             "{estimate:?}"
         );
+    }
+
+    #[test]
+    fn the_own_gap_is_that_of_the_certificate_and_needs_a_reel_that_is_described() {
+        let anchor = Point::new(-5.0, 0.0);
+        let config = |reel: serde_json::Value| {
+            serde_json::from_value::<mission::TetherConfig>(serde_json::json!({
+                "anchor": anchor, "friction": 0.3, "reel": reel,
+                "limits": { "reel_length_m": 40.0, "wrap_max_rad": 9.0, "wrap_total_max_rad": 9.0 },
+            }))
+            .unwrap()
+        };
+        let reel = serde_json::json!({
+            "mass_kg_per_m": 0.1, "floor_friction": 0.3, "pull_n": 20.0, "pay_out_n": 0.5, "pull_ratio_max": 0.8,
+        });
+        // Past the column, and back beside the tether that bends round it.
+        let path = [anchor, Point::new(4.0, -1.5), Point::new(6.0, 0.5), Point::new(2.0, -1.8), anchor];
+        let gap = |config: mission::TetherConfig| {
+            let mission = MissionConfig { tether: Some(config), ..mission() };
+            (Estimate::new(&mission, &drawing(), &path, true).tether.unwrap().own_gap_m, mission)
+        };
+        assert_eq!(gap(config(serde_json::Value::Null)).0, None);
+        let (found, mission) = gap(config(reel));
+        let tether = mission.tether.as_ref().unwrap();
+        let certificate = world::tether::certify(&world::tether::Case {
+            path: &path,
+            anchor,
+            cable: None,
+            boundary: &drawing().boundary,
+            obstacles: &[drawing().obstacles[0].clone()],
+            room_m: mission.limits.radius_m,
+            limits: tether.limits,
+            pull: tether.reel.map(|reel| reel.limits(tether.friction)),
+            returns: true,
+            cuts: &[],
+        });
+        let own_gap = certificate.unwrap().own_gap.unwrap();
+        let found = found.unwrap();
+        assert!((found.value - own_gap.gap_m).abs() < 0.05, "{found:?} {own_gap:?}");
     }
 
     #[test]

@@ -39,7 +39,7 @@ use std::{
     thread::{self, JoinHandle},
     time::{Duration, Instant},
 };
-use tui::{RunMsg, Speed};
+use tui::{Query, RunMsg, Speed};
 
 /// While a real vehicle only waits for its start, one tick in this many is run. A movement of the vehicle must be
 /// noticed, but the events of a long wait must not fill the memory.
@@ -90,6 +90,7 @@ impl Engine {
             has_estimated: false,
             estimates: Newest::default(),
             queries: Newest::default(),
+            deferred: None,
             asked,
             screen,
             speed,
@@ -139,6 +140,8 @@ struct EngineThread {
     estimates: Newest,
     /// The queries that are being answered.
     queries: Newest,
+    /// A query that is answered once the robot stands.
+    deferred: Option<Query>,
     asked: Receiver<Request>,
     screen: RunOutbox,
     speed: Speed,
@@ -167,7 +170,7 @@ impl EngineThread {
     fn fly(mut self) -> Option<Closed> {
         let mut pace = Pace::from(Instant::now());
         loop {
-            pace.rest(self.rests());
+            pace.rest(Instant::now(), self.rests(), self.flight.tick_length(), self.speed);
             let (mut orders, close) = self.wait_for(&pace);
             while pace.makes_up(Instant::now()) {
                 self.tick(Vec::new());
@@ -252,6 +255,7 @@ impl EngineThread {
         assert!(!failing, "drill: the engine fails on purpose");
         self.send_work();
         self.outdate_queries(&events);
+        self.answer_deferred();
         self.estimate(&events);
         let printed = std::mem::take(&mut self.printed);
         self.send(RunMsg::Events(events.into_iter().chain(printed).collect()));

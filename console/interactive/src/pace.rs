@@ -20,30 +20,33 @@ pub(super) struct Pace {
     period: Option<Duration>,
     /// Whether ticks may run late, several at a time.
     rests: bool,
+    /// The number of ticks made up since the last tick that was run on time.
+    n_made_up: u32,
 }
 
 impl Pace {
     /// Creates a schedule whose first tick is due now.
     pub(super) fn from(now: Instant) -> Self {
-        Self { due: now, period: None, rests: false }
+        Self { due: now, period: None, rests: false, n_made_up: 0 }
     }
 
     /// Sets when the following tick is due. The mission does not run faster to make up lost time.
     ///
     /// While the mission waits for a planner or an order (`waits`), the mission runs no faster than real time.
     pub(super) fn tick_flown(&mut self, now: Instant, tick: Duration, speed: Speed, waits: bool) {
-        self.period = match speed {
-            Speed::Times(factor) if waits => Some(tick.div_f64(factor.min(1.0))),
-            Speed::Times(factor) => Some(tick.div_f64(factor)),
-            Speed::Max if waits => Some(tick),
-            Speed::Max => None,
-        };
+        (self.period, self.n_made_up) = (period(tick, speed, waits), 0);
         let is_late = now.saturating_duration_since(self.due) >= MOST_LATE;
         self.due = self.period.map_or(now, |period| if is_late { now } else { self.due } + period);
     }
 
-    /// Sets whether ticks may run late, because only an order can change anything.
-    pub(super) fn rest(&mut self, rests: bool) {
+    /// Sets whether ticks may run late, because only an order can change anything. A mission that begins to rest runs no
+    /// faster than real time from then on, whatever its speed was; ticks that were due before are not made up.
+    pub(super) fn rest(&mut self, now: Instant, rests: bool, tick: Duration, speed: Speed) {
+        if rests && !self.rests {
+            let period = period(tick, speed, true);
+            (self.period, self.n_made_up) = (period, 0);
+            self.due = now + period.unwrap_or(tick);
+        }
         self.rests = rests;
     }
 
@@ -56,14 +59,25 @@ impl Pace {
     }
 
     /// Whether a tick that was postponed while the mission rested is still due. If so, the call counts that tick as
-    /// run.
+    /// run. Only the ticks that run together are made up: on a busy machine, making up more would delay every request.
     pub(super) fn makes_up(&mut self, now: Instant) -> bool {
-        let next = self.period.filter(|_| self.rests).map(|period| self.due + period);
+        let may_make_up = self.rests && self.n_made_up + 1 < TOGETHER;
+        let next = self.period.filter(|_| may_make_up).map(|period| self.due + period);
         let is_due = next.is_some_and(|next| next <= now);
         if let Some(next) = next.filter(|_| is_due) {
-            self.due = next;
+            (self.due, self.n_made_up) = (next, self.n_made_up + 1);
         }
         is_due
+    }
+}
+
+/// The time between ticks; `None` if the next tick is due immediately. A mission that waits runs no faster than real time.
+fn period(tick: Duration, speed: Speed, waits: bool) -> Option<Duration> {
+    match speed {
+        Speed::Times(factor) if waits => Some(tick.div_f64(factor.min(1.0))),
+        Speed::Times(factor) => Some(tick.div_f64(factor)),
+        Speed::Max if waits => Some(tick),
+        Speed::Max => None,
     }
 }
 
@@ -143,7 +157,7 @@ mod tests {
         let began = Instant::now();
         let mut pace = Pace::from(began);
         pace.tick_flown(began, TICK, Speed::Times(1.0), true);
-        pace.rest(true);
+        pace.rest(began, true, TICK, Speed::Times(1.0));
         assert_eq!(pace.wakes_at(false) - began, TICK * 4);
         assert_eq!(pace.wakes_at(true) - began, TICK, "an order does not wait for the others");
         let now = began + TICK * 4 + ms(3);
@@ -151,6 +165,51 @@ mod tests {
         assert_eq!(made_up, 3);
         pace.tick_flown(now, TICK, Speed::Times(1.0), true);
         assert_eq!(pace.wakes_at(true) - began, TICK * 5);
+    }
+
+    /// Flies a mission that is held at this speed on a machine that needs 5 ms for each tick; returns how many ticks the
+    /// engine makes up before it looks at its requests again, at each of some wake-ups, and the mission time that has passed
+    /// for the wall time.
+    fn held_at(speed: Speed, n_wake_ups: u32) -> (Vec<u32>, f64) {
+        let mut now = Instant::now();
+        let mut pace = Pace::from(now);
+        pace.tick_flown(now, TICK, speed, false);
+        let (began, mut n_ticks, mut made_up) = (now, 0, Vec::new());
+        for _ in 0..n_wake_ups {
+            now += ms(5);
+            pace.rest(now, true, TICK, speed);
+            now = now.max(pace.wakes_at(false));
+            let mut n = 0;
+            while n < 1000 && pace.makes_up(now) {
+                (n, now) = (n + 1, now + ms(5));
+            }
+            pace.tick_flown(now, TICK, speed, true);
+            (n_ticks, now) = (n_ticks + n + 1, now + ms(5));
+            made_up.push(n);
+        }
+        (made_up, (TICK * n_ticks).div_duration_f64(now - began))
+    }
+
+    #[test]
+    fn a_hold_at_high_speed_ends_the_high_speed_even_on_a_busy_machine() {
+        for speed in [Speed::Times(64.0), Speed::Times(4.0), Speed::Max, Speed::Times(1.0)] {
+            let (made_up, reached) = held_at(speed, 50);
+            assert!(made_up.iter().all(|n| *n < TOGETHER), "{speed:?}: {made_up:?}");
+            assert!((0.9..1.1).contains(&reached), "{speed:?}: {reached} times real time");
+        }
+    }
+
+    #[test]
+    fn a_long_absence_while_the_mission_rests_is_not_made_up() {
+        let began = Instant::now();
+        let mut pace = Pace::from(began);
+        pace.tick_flown(began, TICK, Speed::Times(1.0), true);
+        pace.rest(began, true, TICK, Speed::Times(1.0));
+        let late = began + TICK * 1000;
+        let n = std::iter::from_fn(|| pace.makes_up(late).then_some(())).count();
+        assert_eq!(n, 3);
+        pace.tick_flown(late, TICK, Speed::Times(1.0), true);
+        assert_eq!(pace.wakes_at(true) - late, TICK, "what was due before is dropped");
     }
 
     #[test]

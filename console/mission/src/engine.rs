@@ -253,6 +253,7 @@ impl Mission {
             touched: readings.contact,
             reached,
             beside: self.known.tether.as_ref().filter(|_| back.is_some()).and_then(Tether::beside_lying),
+            left_ahead_m: self.known.cable_left_ahead_m(),
             can_replan: self.known.plans_ways_home(),
             can_go_home: self.can_go_home(),
             planner: self.driving.seen(&self.known, self.robot_waits()),

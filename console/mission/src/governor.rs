@@ -95,6 +95,16 @@ impl Momentum {
         self.ahead_m_per_s
     }
 
+    /// The direction of travel of a robot at a pose, a unit vector; zero at standstill.
+    pub(crate) fn direction(&self, pose: Pose) -> Vector {
+        let velocity = if self.velocity == Vector::zeros() {
+            pose.direction() * self.ahead_m_per_s
+        } else {
+            self.velocity
+        };
+        velocity.try_normalize(1e-12).unwrap_or_else(Vector::zeros)
+    }
+
     /// The robot's speed after following a drive for one tick.
     pub(crate) fn after(&self, drive: Drive, here: &Here) -> Self {
         self.motions(drive, here).after

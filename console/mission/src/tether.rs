@@ -215,7 +215,8 @@ impl Tether {
         if self.payout.is_expected() {
             self.take_up.expect();
         }
-        if self.payout.is_snagged() && !self.take_up.can_be_caught(readings, reel.as_ref()) {
+        let is_weak = self.is_reel_too_weak();
+        if self.payout.is_snagged() && !self.take_up.can_be_caught(readings, reel.as_ref(), is_weak) {
             self.payout.explain();
             if !has_stopped {
                 self.slack.distrust();

@@ -123,6 +123,9 @@ impl Record {
                     tether.lie(point, reel_off_m, *pull_factor, (bends, robot));
                 }
             }
+            EventKind::Certified { refused: false, certificate, .. } => {
+                self.tether.iter_mut().for_each(|tether| tether.own_gap = certificate.own_gap);
+            }
             EventKind::PlannerChosen { info, .. }
                 if self.planners.len() < MOST_PLANNERS && self.planners.last() != Some(info) =>
             {

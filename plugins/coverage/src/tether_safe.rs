@@ -191,7 +191,8 @@ fn warn(worth: &Worth, preferences: &Preferences, scope: &Scope<'_>, scans_enoug
     } else if preferences.pull_share(&Strain::from(&worth.certificate)) > 1.0 {
         let why = worth.certificate.warnings.join("; ");
         warn(&format!(
-            "no candidate keeps pull, length and wrap of the cable all within the preferred values: {why}"
+            "no candidate that was tried keeps pull, length and wrap of the cable all within the preferred values: \
+             {why}; smaller limits of pull or wrap let the planner try other candidates"
         ));
     } else if has_reel && !worth.meets(preferences) {
         warn("no candidate keeps the cable within the preferred length and wrap");

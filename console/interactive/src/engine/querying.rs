@@ -2,15 +2,29 @@
 
 use super::{EngineThread, newest::Turn};
 use crate::inbox::RunOutbox;
-use mission::{Event, EventKind, Mission};
+use mission::{Event, EventKind, Mission, Phase};
 use std::thread;
 use tui::{Query, RunMsg};
 
 impl EngineThread {
-    /// Answers a query with the state of the mission at this moment; nothing changes.
-    pub(super) fn query(&self, query: Query) {
+    /// Answers a query with the state of the mission at this moment; nothing changes. The way back of a robot that still brakes
+    /// is searched for once the robot stands: from elsewhere, the order could have no way or another one.
+    pub(super) fn query(&mut self, query: Query) {
+        if query == Query::WayBack && self.flight.mission().is_braking() {
+            self.deferred = Some(query);
+            return;
+        }
         let mission = self.flight.mission().clone();
         answer_aside(self.queries.begin(), self.screen.clone(), move || answer(&mission, query));
+    }
+
+    /// Answers a query that waited until the robot stands.
+    pub(super) fn answer_deferred(&mut self) {
+        let query = self.deferred.take_if(|_| !self.flight.mission().is_braking());
+        // A robot that has been resumed meanwhile has no way back.
+        if let Some(query) = query.filter(|_| matches!(self.flight.phase(), Phase::Held(_))) {
+            self.query(query);
+        }
     }
 
     /// Drops answers that the events of a tick have outdated: a new zone changes the cost of every other one.

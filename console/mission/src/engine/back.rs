@@ -5,14 +5,17 @@
 //! for a running robot apply, but every hold ends only by order. After a hold, the operator may order the drive again, or
 //! resume the mission; the planner then makes a new plan from there.
 
+mod dead_ends;
 mod escape;
 mod way;
+
+pub(super) use dead_ends::DeadEnds;
 
 use super::{Mission, known::Known};
 use crate::{
     event::{EventKind, OfferEnd},
     order::Order,
-    phase::{Gait, Hold, HoldReason, Outcome, Resumes},
+    phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes},
     task::CornerPatience,
     tether::Tether,
     way_back::{Home, WayBack},
@@ -72,6 +75,11 @@ impl Mission {
     pub fn way_back(&self) -> Result<WayBack, String> {
         self.standing().allows(&Order::DriveBack).map_err(|why| why.to_string())?;
         self.known.way_back()
+    }
+
+    /// Whether a held robot has not come to a stop yet: its way back begins where it will stand.
+    pub fn is_braking(&self) -> bool {
+        matches!(self.known.phase, Phase::Held(_)) && self.known.speed_m_per_s() != 0.0
     }
 
     /// Whether the reel of the tether is known to have stopped: it does not take the tether up.
@@ -150,6 +158,7 @@ impl Mission {
     /// Forgets a drive back that was broken off: the planner plans again from here.
     pub(super) fn leave_way_back(&mut self) {
         if self.known.back.take().is_some() {
+            self.known.dead_ends.open();
             self.known.tether.iter_mut().for_each(Tether::forget_lying);
             self.driving.course.cuts.clear();
             self.driving.course.want_plan(Reason::Operator);
@@ -158,6 +167,13 @@ impl Mission {
 }
 
 impl Known {
+    /// Closes the place where the robot got stuck on its way beside the tether, so that another way is searched for.
+    pub(super) fn close_dead_end(&mut self) {
+        let Some(back) = self.back.as_ref().filter(|back| back.is_beside) else { return };
+        let (here, to, hull_m) = (self.locator.position(), back.target(), self.config.limits.radius_m);
+        self.dead_ends.close(here, to, hull_m);
+    }
+
     /// Advances along the way back; the command for this tick, in the form in which the robot receives it.
     fn command_back(&mut self) -> Option<Command> {
         self.keep_trail();

@@ -11,7 +11,7 @@ use crate::{
 };
 use geometry::{Braking, Drive};
 use planner_api::{Command, Limits};
-use world::{Medium, Mode};
+use world::{Medium, Mode, Point};
 
 /// Ratio of the speed sent to the speed requested below which a command counts as limited.
 const LIMITED_SHARE: f64 = 0.9;
@@ -23,6 +23,13 @@ impl Known {
     /// allowed it to be reached.
     pub(super) fn speed_m_per_s(&self) -> f64 {
         self.governor.momentum.speed_m_per_s()
+    }
+
+    /// The place where the robot stands if it is told to stop now, tank frame.
+    pub(super) fn stops_at(&self) -> Point {
+        let (here, momentum) = (self.as_governed(), &self.governor.momentum);
+        let way_m = Braking::of(&here.limits).distance_m(momentum.speed_m_per_s());
+        here.pose.position + momentum.direction(here.pose) * way_m
     }
 
     /// Limits a command to what is safe according to the chart and the scan. Returns the limited command and the events

@@ -16,6 +16,9 @@ impl Mission {
     pub(super) fn carry_out(&mut self, verdict: Verdict) {
         match verdict {
             Verdict::Hold(hold) => {
+                if self.known.phase.is_return() && matches!(hold.by, HoldReason::Stuck { .. }) {
+                    self.known.close_dead_end();
+                }
                 self.hold(hold);
                 self.announce_wait();
             }

@@ -1,7 +1,7 @@
 //! The state of a mission, apart from its planners.
 
 use super::{
-    back::Back,
+    back::{Back, DeadEnds},
     finishing::Finishing,
     floor::ScannedFloor,
     governing::{guarding::ScanGuard, state::Governor},
@@ -55,6 +55,8 @@ pub(super) struct Known {
     pub last_drive: Drive,
     /// The drive back that was ordered, until the mission is resumed.
     pub back: Option<Back>,
+    /// Where the robot got stuck on its way back beside the tether, until the mission is resumed.
+    pub dead_ends: DeadEnds,
     /// The tether of a held robot when its finding last changed: the question and the order to drive back take the same way.
     pub resting: Option<Tether>,
     /// The no-go zones that the hull is in.
@@ -87,6 +89,7 @@ impl Known {
             trail: vec![start],
             last_drive: Drive::STILL,
             back: None,
+            dead_ends: DeadEnds::default(),
             resting: None,
             breached: Vec::new(),
             trouble: None,

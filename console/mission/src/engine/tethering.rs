@@ -58,6 +58,13 @@ impl Known {
         }
     }
 
+    /// Cable beyond the taut line, metres, that a stopped reel has left on the floor, if the robot would come near it before it
+    /// could stop.
+    pub(super) fn cable_left_ahead_m(&self) -> Option<f64> {
+        let tether = self.tether.as_ref().filter(|_| !self.locator.is_lost())?;
+        tether.is_left_before(self.stops_at(), self.cable_world()).then(|| tether.excess_m())
+    }
+
     /// Sets whether plans are run even if they are refused for the tether.
     pub(super) fn allow_uncertified(&mut self, fly: bool) {
         if let Some(tether) = &mut self.tether {

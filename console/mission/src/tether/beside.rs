@@ -33,6 +33,10 @@ const TAKEN_UP_M: f64 = 0.15;
 const FOLLOWS_M: f64 = 0.3;
 /// Room, metres, that a way must leave beside the hull to the cable as it is expected to lie then.
 const SPARE_M: f64 = 0.1;
+/// Room, metres, beside the hull to the cable that a stopped reel has left, below which a robot under way is held. It is larger
+/// than the room from which the search for a way beside the cable can begin (0.2 m), also after the distance of a tick and with the
+/// points that are left out of the line of the cable.
+const HELD_BEFORE_M: f64 = 0.28;
 /// Share of the reel's pull up to which the pull that a taut cable needs lets a weak reel take it up suddenly: the cable does
 /// not lie along the taut line then.
 const SUDDEN: f64 = 1.3;
@@ -114,6 +118,14 @@ impl Tether {
     /// Whether the reel is known to have stopped.
     pub(crate) fn has_reel_stopped(&self) -> bool {
         self.take_up.has_stopped()
+    }
+
+    /// Whether a robot that drives straight on to a place comes near the cable that a stopped reel has left on the floor.
+    pub(crate) fn is_left_before(&self, to: Point, world: &World) -> bool {
+        let has_left = self.take_up.has_stopped() && self.torn().is_none();
+        let (laid, out_m) = (self.laid.as_ref().filter(|_| has_left), self.payout.measured_m());
+        laid.zip(out_m)
+            .is_some_and(|(laid, out_m)| laid.is_approached(to, out_m, (self.hull_m, HELD_BEFORE_M), world))
     }
 
     /// Whether only the weakness of the reel keeps the cable on the floor.

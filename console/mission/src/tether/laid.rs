@@ -20,6 +20,8 @@ const LEADS_AWAY: f64 = 3.0;
 const STEP_M: f64 = 0.05;
 /// Length that a reel takes up between two looks at the chain, metres.
 const TAKEN_UP_M: f64 = 0.1;
+/// Change of a distance to the chain above which the robot counts as coming nearer, metres.
+const NEARER_M: f64 = 0.005;
 /// Distance from its line within which points are left out of it, metres.
 const DRAWN_M: f64 = 0.03;
 
@@ -85,9 +87,32 @@ impl Laid {
     /// Whether a hull of a given radius, metres, at the robot's place stands on a part of the chain that does not lead straight
     /// away from it. The simulated cable counts in the same way.
     pub(super) fn is_under(&self, hull_m: f64) -> bool {
-        let here = self.tip();
+        self.gap_m(hull_m) < hull_m
+    }
+
+    /// Distance from the robot's place to the nearest part of the chain that does not lead straight away from a hull of a given
+    /// radius, metres; infinite if all of the chain does.
+    fn gap_m(&self, hull_m: f64) -> f64 {
         let beyond = self.without_end(LEADS_AWAY * hull_m);
-        beyond.len() > 1 && world::polyline::distance_m(beyond, here) < hull_m
+        if beyond.len() > 1 { world::polyline::distance_m(beyond, self.tip()) } else { f64::INFINITY }
+    }
+
+    /// Whether the robot's place comes nearer than `hull_m + spare_m` metres to a part of the chain that does not lead straight
+    /// away from the hull, and nearer than it is now, when the robot drives straight on to a place; `out_m` metres stay off the
+    /// reel. A robot that stands, or drives away from a near part, approaches nothing.
+    pub(super) fn is_approached(
+        &self,
+        to: Point,
+        out_m: f64,
+        (hull_m, spare_m): (f64, f64),
+        world: &World,
+    ) -> bool {
+        let near_m = (hull_m + spare_m).min(self.gap_m(hull_m) - NEARER_M);
+        let mut laid = self.clone();
+        world::polyline::resampled(&[self.tip(), to], STEP_M).into_iter().any(|at| {
+            laid.step(at, out_m, world);
+            laid.gap_m(hull_m) < near_m
+        })
     }
 
     /// Whether a hull of a given radius, metres, that drives along a way comes onto no part of the chain; `out_m` metres stay
@@ -264,6 +289,25 @@ mod tests {
             crossed.step(at, 8.0, &world);
         }
         assert!(!crossed.is_clear_while_taken_up(4.0, 0.2, &world));
+    }
+
+    #[test]
+    fn a_part_of_the_chain_is_approached_only_by_a_robot_that_drives_toward_it() {
+        let world = tank(&[]);
+        // Out along the x axis and back beside it: the far part still lies there.
+        let path = [(0.0, 0.0), (9.0, 0.0), (8.5, 0.6), (5.0, 0.6)].map(|(x, y)| Point::new(x, y));
+        let (laid, _) = driven(&world, &path, f64::max);
+        let at = laid.tip();
+        let is_approached =
+            |x_m: f64, y_m: f64| laid.is_approached(at + Vector::new(x_m, y_m), 9.0, (0.2, 0.1), &world);
+        assert!(is_approached(0.0, -0.4) && is_approached(-0.3, -0.4), "toward it");
+        assert!(!is_approached(0.0, -0.1), "not near enough");
+        assert!(!is_approached(-0.4, 0.0) && !is_approached(-0.2, 0.4) && !is_approached(0.0, 0.0));
+        let mut near = laid.clone();
+        near.step(at + Vector::new(0.0, -0.35), 9.0, &world);
+        let from = near.tip();
+        let leaves = |y_m: f64| near.is_approached(from + Vector::new(0.0, y_m), 9.0, (0.2, 0.1), &world);
+        assert!(!leaves(0.0) && !leaves(0.3) && leaves(-0.1), "a robot that is near may drive away");
     }
 
     #[test]

@@ -61,13 +61,20 @@ impl TakeUp {
     }
 
     /// Whether a cable of which more is out than expected can be caught: it was drawn off the reel against its pull. If the
-    /// pull at the robot contradicts this, the reel has stopped.
-    pub(super) fn can_be_caught(&mut self, readings: &Readings, reel: Option<&Reel>) -> bool {
-        let is_felt = readings.reel_pull_n.is_none() && readings.robot_pull_n.is_some();
-        if is_felt && reel.is_some_and(|reel| self.most_n < IDLE * reel.pull_n) {
+    /// pull at the robot contradicts this, the reel has stopped. A reel that is too weak for the cable leaves it lying, too:
+    /// its pull does not reach a robot that feels little of it.
+    pub(super) fn can_be_caught(
+        &mut self,
+        readings: &Readings,
+        reel: Option<&Reel>,
+        is_too_weak: bool,
+    ) -> bool {
+        let Some((reel, robot_n)) = reel.zip(readings.robot_pull_n) else { return !self.has_stopped };
+        if readings.reel_pull_n.is_none() && self.most_n < IDLE * reel.pull_n {
             self.has_stopped = true;
         }
-        !self.has_stopped
+        let is_left_lying = is_too_weak && robot_n < IDLE * reel.pull_n;
+        !(self.has_stopped || is_left_lying)
     }
 
     /// Whether the reel has stopped, as far as it is known.
@@ -146,10 +153,24 @@ mod tests {
             after(&mut take_up, &readings(6.0, None, Some(most_n)), 1.0);
             let now = readings(6.0, None, Some(then_n));
             after(&mut take_up, &now, 1.0);
-            take_up.can_be_caught(&now, Some(&REEL))
+            take_up.can_be_caught(&now, Some(&REEL), false)
         };
         assert!(caught(12.0, 1.0) && !caught(2.6, 1.0));
         let unfelt = readings(6.0, None, None);
-        assert!(TakeUp::default().can_be_caught(&unfelt, Some(&REEL)), "not measured");
+        assert!(TakeUp::default().can_be_caught(&unfelt, Some(&REEL), true), "not measured");
+    }
+
+    #[test]
+    fn a_cable_that_a_weak_reel_leaves_lying_is_not_caught_unless_the_robot_feels_its_pull() {
+        let caught = |reel_n: Option<f64>, robot_n: f64, is_too_weak: bool| {
+            let mut take_up = TakeUp::default();
+            after(&mut take_up, &readings(6.0, reel_n, Some(12.0)), 1.0);
+            let now = readings(6.8, reel_n, Some(robot_n));
+            after(&mut take_up, &now, 5.0);
+            take_up.can_be_caught(&now, Some(&REEL), is_too_weak)
+        };
+        assert!(!caught(Some(10.0), 1.0, true) && !caught(None, 1.0, true));
+        assert!(caught(Some(10.0), 11.0, true), "the robot draws against the pull of the reel");
+        assert!(caught(Some(10.0), 1.0, false), "the reel is strong enough: something else holds the cable");
     }
 }

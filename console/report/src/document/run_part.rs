@@ -11,6 +11,7 @@ use account::{Accuracy, Calibration, Positioning, PulseRecord, Summary, TakenBac
 use mission::Outcome;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use world::tether::OwnGap;
 
 /// The recovery of a run that its recording process did not close. The digests in the report identify the files of the run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -96,6 +97,9 @@ pub struct TetherPart {
     /// Pull that reeling in needed; absent if the scenario does not describe the reel, so the pull was not checked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pull: Option<PullPart>,
+    /// How near the last certified plan leads the hull to its own taut tether on the way in; absent if that was not computed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub own_gap: Option<OwnGap>,
     /// Assumed coefficient of friction between tether and steel.
     pub friction: f64,
     /// Largest difference between the length at the reel and the length according to the map, metres; absent without
@@ -245,6 +249,7 @@ fn tether(past: &PastRun, summary: &Summary) -> Option<TetherPart> {
             max_at_s: f64::from(most.t_s),
             reel_n,
         }),
+        own_gap: tether.own_gap,
         friction: tether.friction,
         reel_off_max_m: tether.reel_off_max_m,
         truth: summary.tether,

@@ -1,7 +1,10 @@
 //! The tether over a run, according to the estimated position.
 
 use mission::{TetherConfig, event::taut_line};
-use world::{Point, tether::Limits};
+use world::{
+    Point,
+    tether::{Limits, OwnGap},
+};
 
 /// Maximum number of tether lines stored for the picture; beyond that, every second line is dropped.
 const MOST_LINES: usize = 400;
@@ -57,6 +60,8 @@ pub struct TetherRecord {
     /// Largest difference between the length paid out and the length according to the map, metres; absent without an
     /// encoder.
     pub reel_off_max_m: Option<f64>,
+    /// How near the last certified plan leads the hull to its own taut tether on the way in; `None` if that was not computed.
+    pub own_gap: Option<OwnGap>,
     anchor: Point,
     every: usize,
 }
@@ -75,6 +80,7 @@ impl TetherRecord {
             wrap_max_rad: 0.0,
             pull_factor_max: 1.0,
             reel_off_max_m: None,
+            own_gap: None,
             anchor: config.anchor,
             every: 1,
         }

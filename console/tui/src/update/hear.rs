@@ -36,6 +36,9 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
                     EventKind::Resumed | EventKind::ObstacleFound { .. } | EventKind::Ended { .. }
                 )
             };
+            if events.iter().any(|event| event.kind == EventKind::Resumed) {
+                model.live.way_back = None;
+            }
             if events.iter().any(goes_on) {
                 return what_if::forget(model);
             }

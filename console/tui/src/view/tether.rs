@@ -29,6 +29,10 @@ fn note(look: &Look) -> &'static str {
     if look.run.tether.as_ref().is_some_and(|tether| tether.is_broken) {
         return "BROKEN";
     }
+    // The certificate assumes a reel that takes the tether up.
+    if look.run.is_tether_slack() {
+        return "SLACK";
+    }
     match look.run.tether.as_ref().and_then(|tether| tether.certified) {
         Some(true) => "plan certified",
         Some(false) => "NOT certified",
@@ -60,7 +64,7 @@ fn wide_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> 
         row(2, "wrap", (wrap_role(look, tether), worst(look, tether, ("", room)))),
         row(5, "total wrap", (Role::Text, total(tether))),
         row(8, "contacts", (Role::Text, contacts(tether))),
-        row(0, "return path", home(tether)),
+        row(0, "return path", home(look, tether)),
     ];
     // Of the two curves, that of a measured pull is the more important.
     lines.push((7, trend(look, tether, columns)));
@@ -127,7 +131,7 @@ fn narrow_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)
     .into_iter()
     .chain(pull)
     .chain(felt)
-    .chain([row(0, "return path ", home(tether))])
+    .chain([row(0, "return path ", home(look, tether))])
     .collect()
 }
 
@@ -289,9 +293,11 @@ fn contacts(tether: &Tether) -> String {
     tether.contacts.iter().map(|contact| contact.on.as_str()).collect::<Vec<_>>().join(", ")
 }
 
-fn home(tether: &Tether) -> (Role, String) {
+fn home(look: &Look, tether: &Tether) -> (Role, String) {
     match tether.return_length_m {
         _ if tether.is_snagged => (Role::Crit, "UNKNOWN".into()),
+        // The robot must not drive along a tether that lies on the floor.
+        Some(_) if look.run.is_tether_slack() => (Role::Warn, "see :return".into()),
         Some(way_m) => (Role::Good, format!("CLEAR, {} m", metres(way_m))),
         None => (Role::Crit, "BLOCKED".into()),
     }

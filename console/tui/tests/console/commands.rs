@@ -288,7 +288,8 @@ fn a_station_of_the_simulation_fails_on_order_with_the_name_of_who_ordered_it() 
 #[test]
 fn a_station_is_excluded_and_taken_back() {
     let order = |used| vec![Effect::Order(Order::UseStation { station: StationId(4), used, by: None })];
-    for mut screen in [Screen::running(), Screen::held()] {
+    for state in [Screen::running, Screen::held] {
+        let mut screen = state();
         assert_eq!(run(&mut screen, "exclude S4"), order(false));
         assert_eq!(run(&mut screen, "include S4"), order(true));
     }

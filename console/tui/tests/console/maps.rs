@@ -55,6 +55,7 @@ fn estimate(length_m: f64) -> Estimate {
             wrap_total_max_rad: 1.2,
             end_length_m: 18.0,
             pull_max_n: None,
+            own_gap_m: None,
         }),
         accuracy_worst: Some(worst(0.17, 7.8, 4.0)),
         without_fix_m: 0.0,
@@ -202,7 +203,7 @@ fn the_mission_on_lanes() {
 
 #[test]
 fn nothing_on_either_screen_is_cut() {
-    let mut screens = [("plan", planned()), ("mission", under_way())];
+    let mut screens = vec![("plan", planned()), ("mission", under_way())];
     for (name, screen) in &mut screens {
         for (width, height) in [(200, 60), (160, 45), (120, 36), (100, 30), (80, 24), (60, 16)] {
             screen.send(Msg::Resize { width, height });

@@ -364,6 +364,57 @@ fn the_pull_the_slack_and_the_loops_of_a_tether_are_shown() {
 }
 
 #[test]
+fn with_a_slack_tether_no_pane_claims_a_certified_plan_or_a_clear_return_path() {
+    let mut screen = Screen::tethered();
+    let certified = screen.mission.certified(&[]);
+    screen.hear(RunMsg::Events(vec![screen.mission.cable(), certified]));
+    screen.send(Msg::Resize { width: 120, height: 36 });
+    screen.type_text("3");
+    let sound = text(&drawn(&screen.model, RICH, (120, 36)));
+    assert!(sound.contains("plan certified") && sound.contains("CLEAR"), "{sound}");
+    let alarm = TetherAlarm::Slack { slack_m: 0.3, pull_n: 0.1 };
+    let held = HoldReason::Tether { message: alarm.to_string() };
+    let alarmed = screen.mission.now(EventKind::TetherAlarmRaised { alarm, reached: true });
+    screen.hear(RunMsg::Events(vec![alarmed, screen.mission.held_until(held, Resumes::Never)]));
+    for size in [(120, 36), (80, 24)] {
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        screen.type_text("3");
+        let shown = text(&drawn(&screen.model, RICH, size));
+        assert!(!shown.contains("plan certified") && !shown.contains("CLEAR"), "{size:?}\n{shown}");
+        assert!(shown.contains("see :return"), "{size:?}\n{shown}");
+        screen.type_text("2");
+        let shown = text(&drawn(&screen.model, RICH, size));
+        assert!(shown.contains("tether SLACK") && !shown.contains("tether certified"), "{size:?}\n{shown}");
+    }
+}
+
+#[test]
+fn the_state_line_offers_the_drive_back_from_tether_that_lies_or_is_caught_until_no_way_back_is_found() {
+    let reasons = [
+        "tether snagged on an unmapped object: 7.8 m paid out, 6.7 m expected",
+        "tether snagged or slack: 7.4 m paid out, 5.8 m expected",
+        "the reel takes the tether up again: 8.3 m are out, 8.5 m were out at the order",
+        "hull about to reach its own tether: the reel has stopped",
+    ];
+    for reason in reasons {
+        let mut screen = Screen::tethered();
+        let held = HoldReason::Tether { message: reason.into() };
+        screen.hear(RunMsg::Events(vec![
+            screen.mission.cable(),
+            screen.mission.held_until(held, Resumes::Never),
+        ]));
+        screen.send(Msg::Resize { width: 120, height: 36 });
+        let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+        assert!(shown.contains("drive back"), "{reason}\n{shown}");
+        screen.hear(RunMsg::WayBack(Err("the hull does not fit".into())));
+        let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+        assert!(!shown.contains("drive back"), "{reason}\n{shown}");
+        screen.hear(RunMsg::Events(vec![screen.mission.now(EventKind::Resumed)]));
+        assert_eq!(screen.model.live.way_back, None);
+    }
+}
+
+#[test]
 fn a_broken_tether_is_named_by_pane_and_alarm() {
     let mut screen = Screen::tethered();
     let alarm = TetherAlarm::Broken { paid_out_m: 0.0, needed_m: 5.2, by_encoder_alone: false };

@@ -107,7 +107,8 @@ fn before_the_start_the_plan_with_the_value_is_compared_first() {
 
 #[test]
 fn under_way_a_forecast_with_the_value_is_shown_first() {
-    for mut screen in [Screen::held(), Screen::running()] {
+    for state in [Screen::held, Screen::running] {
+        let mut screen = state();
         let now = screen.model.live.run.planning.choice.clone().expect("a planner");
         let with = changed(&screen, 1.5);
         let asked = type_value(&mut screen, "1.5");

@@ -47,24 +47,40 @@ impl OwnGap {
     /// # Errors
     /// As for `certify`.
     pub(super) fn on(case: &Case<'_>, ground: &Ground) -> Result<Option<Self>, TetherError> {
-        let mut cable = match case.cable {
+        let cable = match case.cable {
             Some(cable) => cable.clone(),
             None => Cable::on(case.anchor, Arc::clone(&ground.obstacles))?,
         };
+        Ok(Self::along(cable, case.path, case.room_m))
+    }
+
+    /// Measures a path of a hull with a given radius, metres, at places 0.1 m apart; `None` if the cable bends nowhere while it
+    /// is taken up.
+    ///
+    /// ```
+    /// use world::{Boundary, Point, Shape, tether::{Cable, OwnGap}};
+    /// let column = Shape::Disc { center: Point::new(3.0, 0.0), radius_m: 0.3 };
+    /// let cable = Cable::new(Point::origin(), &Boundary::Circle { radius_m: 10.0 }, &[column]).unwrap();
+    /// let path = [(0.0, 1.0), (5.0, 1.0), (5.0, -1.0), (2.0, -0.8)].map(|(x, y)| Point::new(x, y));
+    /// let gap = OwnGap::along(cable.clone(), &path, 0.2).unwrap();
+    /// assert!(gap.gap_m > 0.0 && gap.gap_m < 1.0);
+    /// assert_eq!(OwnGap::along(cable, &path[..2], 0.2), None);
+    /// ```
+    pub fn along(mut cable: Cable, path: &[Point], hull_m: f64) -> Option<Self> {
         let mut least: Option<Self> = None;
         let mut before_m = f64::NEG_INFINITY;
-        for at in polyline::resampled(case.path, STEP_M) {
+        for at in polyline::resampled(path, STEP_M) {
             cable.drag_to(at);
             let length_m = cable.length_m();
             let is_taken_up = length_m < before_m - SAME_M;
             before_m = length_m;
-            let from_centre_m = if is_taken_up { beyond_last_bend_m(&cable, case.room_m) } else { None };
-            let Some(gap_m) = from_centre_m.map(|m| m - case.room_m) else { continue };
+            let from_centre_m = if is_taken_up { beyond_last_bend_m(&cable, hull_m) } else { None };
+            let Some(gap_m) = from_centre_m.map(|m| m - hull_m) else { continue };
             if least.is_none_or(|least| gap_m < least.gap_m) {
                 least = Some(Self { gap_m, at });
             }
         }
-        Ok(least)
+        least
     }
 }
 

@@ -9,6 +9,8 @@ use world::{Obstacle, ObstacleId, Point, World, ZoneKind, polyline, shortest::No
 
 /// Maximum number of times that a search for a path may ask whether to go on.
 const MOST_STEPS: usize = 200_000;
+/// Least clearance of a way beside a tether, metres: with less, the robot hardly moves on, and it cannot evade.
+const LEAST_CLEARANCE_M: f64 = 0.02;
 /// Minimum overlap of the hull with an object, metres, at which a new way is searched for. Found obstacles are placed
 /// with about this accuracy.
 const DOUBT_M: f64 = 0.02;
@@ -37,6 +39,7 @@ impl Known {
         let back = self.back.as_ref().filter(|back| back.is_beside)?;
         let is_right = tether.beside_lying() == Some(Clearance::Free) && self.is_way_back_free();
         let rest = self.led_from_here(back.follower.remaining().to_vec());
+        let is_right = is_right && !self.dead_ends.are_on(&rest, self.config.limits.radius_m);
         (is_right && tether.is_clear(&rest, self.chart.world())).then_some(rest)
     }
 
@@ -45,9 +48,12 @@ impl Known {
     /// # Errors
     /// The robot does not fit beside the tether; the remedies.
     fn way_beside(&self, tether: &Tether) -> Result<Vec<Point>, String> {
-        let fenced = fenced(self.chart.world());
-        let beside =
-            |room_m: f64| tether.way_beside(&fenced, room_m).filter(|way| self.is_free_from_here(way));
+        let mut fenced = fenced(self.chart.world());
+        fenced.obstacles.extend(self.dead_ends.obstacles());
+        let least_m = self.config.limits.radius_m + LEAST_CLEARANCE_M;
+        let beside = |room_m: f64| {
+            tether.way_beside(&fenced, room_m.max(least_m)).filter(|way| self.is_free_from_here(way))
+        };
         self.widest(beside).ok_or_else(|| {
             let (cause, remedy) = if tether.torn().is_some() {
                 ("the tether is broken and lies on the floor", "")
@@ -60,7 +66,8 @@ impl Known {
                 ("the reel does not take the tether up", ", or repair the reel")
             };
             format!(
-                "{cause}, and the hull does not fit beside the tether all the way to the anchor; end the mission here and \
+                "{cause}, and the hull does not fit beside the tether all the way to the anchor with {LEAST_CLEARANCE_M} m of \
+                 clearance; end the mission here and \
                  fetch the robot by hand{remedy}"
             )
         })

@@ -42,6 +42,9 @@ pub(in crate::engine) struct Seen<'a> {
     pub reached: Option<&'a TetherAlarm>,
     /// What the tether on the floor beside which the robot drives back means for it; `None` if it drives back beside none.
     pub beside: Option<Clearance>,
+    /// Cable beyond the taut line, metres, that a stopped reel has left on the floor, if the robot would come near it before it
+    /// could stop.
+    pub left_ahead_m: Option<f64>,
     /// Whether the mission may begin a plan with a return path along the tether.
     pub can_replan: bool,
     /// Whether the hull fits through the return path along the tether.

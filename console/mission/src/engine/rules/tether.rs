@@ -63,7 +63,7 @@ impl TetherRule {
 
     /// Processes one tick of a running robot.
     pub(crate) fn update(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
-        let alarm = self.reached(seen)?;
+        let Some(alarm) = self.reached(seen) else { return before_own_cable(seen) };
         self.waited_s = 0.0;
         let message = alarm.to_string();
         Some(match alarm {
@@ -112,6 +112,16 @@ impl TetherRule {
         self.waited_s += seen.config.tick_s;
         None
     }
+}
+
+/// Holds a robot that would come near its own cable, which a stopped reel has left on the floor.
+fn before_own_cable(seen: &Seen<'_>) -> Option<Verdict> {
+    let left_m = seen.left_ahead_m?;
+    let message = format!(
+        "hull about to reach its own tether: the reel has stopped, and {left_m:.1} m of slack lie on the floor; order the drive \
+         back"
+    );
+    Some(stay(seen, message, Outcome::Aborted))
 }
 
 /// Holds a robot until an operator decides; without one, the mission ends.

@@ -96,6 +96,47 @@ fn a_stopped_reel_stays_stopped_when_the_task_is_taken_up_again_until_it_pulls()
     assert!(!flight.mission.has_reel_stopped());
 }
 
+/// Goes on for some ticks with a reel that takes nothing up, or with one that works, until the robot is held or the mission
+/// ended.
+fn go_on_with_a_reel(flight: &mut Flight, works: bool, ticks: usize) {
+    let mut out_m = 0.0_f64;
+    for _ in 0..ticks {
+        let taut_m = flight.reel.as_ref().unwrap().length_m();
+        out_m = out_m.max(taut_m + flight.caught_m);
+        flight.caught_m = if works { 0.0 } else { out_m - taut_m };
+        flight.tick(&[]);
+        if flight.held_by().is_some() || flight.ended().is_some() {
+            break;
+        }
+    }
+}
+
+#[test]
+fn a_task_that_is_taken_up_again_with_a_stopped_reel_is_held_before_the_hull_reaches_the_cable() {
+    const OWN: &str = "hull about to reach its own tether";
+    let resumed = |works: bool| {
+        let mut flight = dragged(Some(0.5), Some(2.6));
+        if works {
+            (flight.reel_pull_n, flight.pull_n) = (Some(10.0), Some(12.0));
+        }
+        for _ in 0..20 {
+            flight.tick(&[Order::Resume]);
+            go_on_with_a_reel(&mut flight, works, 600);
+            if is_held_with(&flight, OWN) || flight.ended().is_some() {
+                break;
+            }
+        }
+        flight
+    };
+    let mut stopped = resumed(false);
+    assert!(is_held_with(&stopped, OWN), "{:?}", stopped.mission.phase());
+    let at = stopped.pose.position;
+    stopped.fly(30);
+    assert_eq!(stopped.pose.position, at, "the robot stands where it was held");
+    let works = resumed(true);
+    assert!(works.events.iter().all(|event| !format!("{:?}", event.kind).contains(OWN)));
+}
+
 #[test]
 fn the_question_and_the_order_take_the_same_way_although_the_readings_move_a_little() {
     let (mut flight, ..) = slack();

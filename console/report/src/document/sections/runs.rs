@@ -122,6 +122,11 @@ fn tether_table(tether: &TetherPart) -> Table {
         let cells = ["Largest pull to reel in", "not checked", "", "", "", ""];
         table.row(cells.map(Into::into).to_vec());
     }
+    if let Some(own_gap) = tether.own_gap {
+        let cells =
+            ["Least gap between hull and own taut tether, planned way in".into(), own_gap.text().into()];
+        table.row(cells.into_iter().chain((0..4).map(|_| "".into())).collect());
+    }
     let pull = format!("×{:.2}", tether.pull_factor_max);
     let name = format!("Largest capstan factor (friction {})", tether.friction);
     table.row(vec![name.into(), pull.into(), "".into(), "".into(), "".into(), "".into()]);

@@ -36,6 +36,9 @@ pub(super) fn clauses(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String>
     if head == Head::NotConfirmed {
         clauses.insert(1, if is_drivable { MAY_MOVE } else { MAY_MOVE_SHORT }.into());
     }
+    // Once no way back was found, the drive back is no remedy.
+    let has_no_way = matches!(model.live.way_back, Some(Err(_)));
+    clauses.retain(|clause| !(has_no_way && clause.starts_with("<return>")));
     clauses.into_iter().chain(message(by).filter(|_| is_drivable)).collect()
 }
 
@@ -189,6 +192,7 @@ fn held_by_break(head: Head, by: &HoldReason) -> Vec<String> {
 fn held_for_good(head: Head, by: &HoldReason) -> Vec<String> {
     const RESUME: &str = "<resume>: resume.";
     const RETRY: &str = "<resume>: retry.";
+    const RETURN: &str = "<return>: drive back.";
     const PLANNER: &str = "<planner>: change planner.";
     let (reason, remedies): (String, &[&str]) = match by {
         // The reason for the hold is gone.
@@ -202,8 +206,8 @@ fn held_for_good(head: Head, by: &HoldReason) -> Vec<String> {
         HoldReason::ZoneBreached { .. } => {
             (": hull has left the zone".into(), &[RESUME, "<end>: end mission."])
         }
-        HoldReason::Tether { message } if message.starts_with("reel does not take") => {
-            (reason(by), &[RESUME, "<return>: drive back.", "<end>: end mission."])
+        HoldReason::Tether { message } if is_helped_by_return(message) => {
+            (reason(by), &[RESUME, RETURN, "<end>: end mission."])
         }
         HoldReason::Tether { .. } | HoldReason::Guard { .. } => {
             (reason(by), &[RESUME, "<end>: end mission."])
@@ -214,6 +218,18 @@ fn held_for_good(head: Head, by: &HoldReason) -> Vec<String> {
     std::iter::once(head.with(&format!("{reason}.")))
         .chain(remedies.iter().map(|remedy| (*remedy).to_owned()))
         .collect()
+}
+
+/// Whether the drive back is a remedy for a hold by the tether: the tether is slack or caught, or lies in the way.
+fn is_helped_by_return(message: &str) -> bool {
+    const REASONS: [&str; 5] = [
+        "reel does not take",
+        "tether snagged",
+        "hull about to reach",
+        "the reel takes the tether up again",
+        "more tether comes off",
+    ];
+    REASONS.iter().any(|reason| message.starts_with(reason))
 }
 
 /// Maximum width of the reason for a tether alarm, columns: with the word HELD and one key, it fits into 60 columns.

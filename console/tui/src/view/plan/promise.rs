@@ -327,7 +327,7 @@ const fn figure(label: &'static str, letter: &'static str, unit: &'static str, d
 const FIX_LEVEL: &str = "fix level";
 
 /// The figures in table order.
-const FIGURES: [Figure; 11] = [
+const FIGURES: [Figure; 12] = [
     Figure {
         promised: |e, _| Some(Found::of(e.time_s)),
         limit: |m| Some(m.time_limit_s),
@@ -383,6 +383,10 @@ const FIGURES: [Figure; 11] = [
         warns: |m| Some(m.tether.as_ref()?.reel?.preferred_n()),
         now: |run| of_tether(run, |tether| Some(format!("{} N", text::number(tether.pull_n?, 1)))),
         ..figure("reel needs", "p", " N", 1)
+    },
+    Figure {
+        promised: |e, _| Some(Found::worst(e.tether.as_ref()?.own_gap_m?)),
+        ..figure("own gap", "", " m", 2)
     },
     Figure {
         brief: "AE",

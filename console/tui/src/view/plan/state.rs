@@ -218,6 +218,10 @@ fn certificate(look: &Look, columns: usize) -> Option<(Role, String)> {
         let words = ["tether TORN: the certificate does not apply", "tether TORN"].map(str::to_owned);
         return Some((Role::Crit, text::wording(words, columns)));
     }
+    if look.run.is_tether_slack() {
+        let words = ["tether SLACK: the certificate assumes a reel that takes it up", "tether SLACK"];
+        return Some((Role::Crit, text::wording(words.map(str::to_owned), columns)));
+    }
     Some(match tether.and_then(|tether| tether.certified) {
         Some(true) => {
             let pull = pull(look);
