@@ -518,7 +518,7 @@ fn no_warning_of_the_pre_flight_check_is_hidden_behind_another() {
         }
         let pane = beside_map(&screen, (width, height));
         let pane = pane.split("Pre-flight").last().unwrap_or_default();
-        let named = warned.iter().filter(|what| pane.contains(&format!("{what}"))).count();
+        let named = warned.iter().filter(|what| pane.contains(what.as_str())).count();
         let rest = warned.len() - named;
         assert!(rest == 0 || pane.contains(&format!("and {rest} more")), "{named}\n{shown}");
         assert!(

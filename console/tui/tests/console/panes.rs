@@ -329,14 +329,14 @@ fn on_a_large_terminal_each_pane_has_a_key_that_its_title_shows() {
     screen.send(Msg::Resize { width: 120, height: 36 });
     let shown = text(&drawn(&screen.model, RICH, (120, 36)));
     assert!(shown.contains("▸ F2 Map") && shown.contains("─ F3 Events"), "{shown}");
-    screen.press([tui::Key::F(3)]);
+    screen.press([Key::F(3)]);
     let shown = text(&drawn(&screen.model, RICH, (120, 36)));
     assert!(shown.contains("▸ F3 Events") && shown.contains("─ F2 Map"), "{shown}");
-    screen.press([tui::Key::F(4)]);
+    screen.press([Key::F(4)]);
     assert!(text(&drawn(&screen.model, RICH, (120, 36))).contains("▸ F4 Stations"));
     // On a smaller terminal, Tab is the way, and the key says so.
     screen.send(Msg::Resize { width: 80, height: 24 });
-    screen.press([tui::Key::F(2)]);
+    screen.press([Key::F(2)]);
     let said = screen.model.notice().map(|notice| notice.text.clone()).unwrap_or_default();
     assert!(said.contains("Tab: next pane"), "{said}");
     assert!(!text(&drawn(&screen.model, RICH, (80, 24))).contains("F2"));
@@ -459,7 +459,7 @@ fn a_blocked_return_path_is_named_by_the_pane_and_the_alarm_at_every_size() {
         screen.type_text("3");
         let mut shown = text(&drawn(&screen.model, RICH, size));
         for _ in 0..6 {
-            screen.press([tui::Key::Tab]);
+            screen.press([Key::Tab]);
             shown += &text(&drawn(&screen.model, RICH, size));
         }
         assert!(
