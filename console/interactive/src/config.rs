@@ -96,7 +96,7 @@ fn attention_to(fault: &Fault, name: &str, text: &str) -> Attention {
 }
 
 fn point(severity: Severity, text: String) -> Attention {
-    Attention { severity, kind: "CONFIG".into(), text }
+    Attention { severity, kind: "CONFIG".into(), text, run: None }
 }
 
 fn folder() -> Option<PathBuf> {

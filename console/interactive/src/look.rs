@@ -2,7 +2,7 @@
 
 use super::{config::presets, desk::Tools, inbox::Outbox};
 use flight::{planners::check_choices, scenarios};
-use mission::{Severity, TaskConfig};
+use mission::{Severity, TaskConfig, clock};
 use runs::Listed;
 use scenario::{Scenario, Settings};
 use std::{
@@ -217,12 +217,19 @@ fn attention(runs: &[PastRun], scenarios: &[ScenarioEntry]) -> Vec<Attention> {
     let bad_ends = ["CRASHED", "RECORDING FAILED", "UNREADABLE"];
     let bad_runs = runs.iter().take(RECENT).filter(|run| bad_ends.contains(&run.end.as_str())).map(|run| {
         let note = run.note.clone().unwrap_or_default();
-        let text = if run.end == "CRASHED" {
-            format!("run {}: re-scan the rest (:rescan); {note}{NEXT_AFTER_CRASH}", run.name)
+        let what = if run.scenario.is_empty() {
+            run.name.clone()
         } else {
-            format!("run {}: {note}", run.name)
+            format!("{} {}", run.scenario, run.began)
         };
-        point(Severity::Warn, &run.end, text)
+        let text = if run.end == "CRASHED" {
+            let kept =
+                run.mission_time_s.map_or_else(String::new, |t_s| format!(" kept to T+{};", clock(t_s)));
+            format!("{what}:{kept} re-scan the rest (:rescan); run {}: {note}{NEXT_AFTER_CRASH}", run.name)
+        } else {
+            format!("{what}: {note} (run {})", run.name)
+        };
+        Attention { run: Some(run.name.clone()), ..point(Severity::Warn, &run.end, text) }
     });
     let invalid = scenarios.iter().filter_map(|entry| {
         let problem = entry.problem.as_ref()?;
@@ -233,5 +240,5 @@ fn attention(runs: &[PastRun], scenarios: &[ScenarioEntry]) -> Vec<Attention> {
 }
 
 fn point(severity: Severity, kind: &str, text: String) -> Attention {
-    Attention { severity, kind: kind.to_owned(), text }
+    Attention { severity, kind: kind.to_owned(), text, run: None }
 }

@@ -91,6 +91,7 @@ pub enum ActionId {
     Severity,
     Filter,
     NextPane,
+    FullPane,
     PreviousPane,
     /// The pane with this number (from 1) on a screen that shows several panes.
     Pane(u8),

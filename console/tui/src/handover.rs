@@ -1,14 +1,16 @@
 //! The handover page, which an operator writes for the next one: the state, the reasons and the next steps.
 
+use crate::actions::ActionId;
 use crate::guide;
 use crate::model::{
     Alarm, Model,
     alarms::State,
     log::{Entry, What, clock, severity_word},
 };
+use crate::update::offered;
 use crate::view::{Bases, by_command};
 use account::{Area, MissReason};
-use mission::{EventKind, Order, TaskConfig, event::SLACK_M};
+use mission::{EventKind, Order, Phase, TaskConfig, event::SLACK_M};
 use world::ZoneKind;
 
 /// The page as Markdown, from the state of the console; it ends with a line break.
@@ -74,8 +76,36 @@ fn state(model: &Model) -> Vec<String> {
     lines
 }
 
+/// The next steps. While the robot is held, these are the ways on: resume, drive back, end.
 fn next(model: &Model) -> Vec<String> {
-    clauses(model, true)
+    let ways = ways_on(model);
+    // The state line names some of the ways as keys.
+    let named = ["`resume`", "`return`", "`end`"];
+    let is_way = |clause: &String| !ways.is_empty() && named.iter().any(|name| clause.contains(name));
+    let others = clauses(model, true).into_iter().filter(|clause| !is_way(clause));
+    let others: Vec<String> = others.collect();
+    ways.into_iter().chain(others).collect()
+}
+
+/// What a held robot can do next, with the commands; empty while it is not held.
+fn ways_on(model: &Model) -> Vec<String> {
+    let run = &model.live.run;
+    if !matches!(run.phase(), Phase::Held(_)) {
+        return Vec::new();
+    }
+    let can = |id: ActionId| offered(model, id).is_ok();
+    let rest_m = run.planning.plan.as_ref().zip(run.progress.as_ref()).zip(run.position.pose);
+    let rest = rest_m.map(|((plan, progress), pose)| plan.rest_m(pose.position, progress.done));
+    let rest =
+        rest.filter(|m| m.is_finite()).map_or_else(String::new, |m| format!(", {m:.1} m of the plan left"));
+    let back_m = run.tether.as_ref().and_then(|tether| tether.return_length_m);
+    let back = back_m.map_or_else(String::new, |m| format!(", {m:.1} m along the tether"));
+    let ways = [
+        (ActionId::Resume, format!("Resume the task (`resume`){rest}")),
+        (ActionId::DriveBack, format!("Drive back and end there (`return`){back}")),
+        (ActionId::Abort, "End the mission here (`end`)".to_owned()),
+    ];
+    ways.into_iter().filter(|(id, _)| can(*id)).map(|(_, words)| words).collect()
 }
 
 /// The clauses of the state line that name a command, as the next steps do, or the others: the state and its reason.

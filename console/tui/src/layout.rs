@@ -34,6 +34,15 @@ const fn wish(pane: Pane, least: u16, rows: u16) -> Wish {
     Wish { pane, least, rows }
 }
 
+/// The rows, with the frame, that panes of the plan screen need in the width of the column beside the map.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PlanRows {
+    /// The state of the plan.
+    pub state: u16,
+    /// The checks that fail, warn or are not ticked; 0 if every check passed.
+    pub checks: u16,
+}
+
 /// What chooses the ways of the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Ways {
@@ -151,7 +160,7 @@ pub(crate) fn plan(
     area: Rect,
     (width, height): (u16, u16),
     pane: Pane,
-    rows: &dyn Fn(u16) -> u16,
+    rows: &dyn Fn(u16) -> PlanRows,
 ) -> Vec<(Pane, Rect)> {
     let arrangement = Arrangement::of(width, height);
     if arrangement == Arrangement::Paged {
@@ -168,24 +177,36 @@ pub(crate) fn plan(
     let mut placed = vec![(Pane::Map, map)];
     // On a tall screen, a curve is shown below the figures.
     let promise = wish(Pane::Promise, 10, if area.height >= TALL { area.height } else { 12 });
-    let needed = rows(side.width).clamp(5, area.height.saturating_sub(promise.least).max(5));
-    let state = wish(Pane::Plan, needed, needed.max(6));
-    if arrangement == Arrangement::Narrow {
+    let needed = rows(side.width);
+    let is_narrow = arrangement == Arrangement::Narrow;
+    // What fails or warns has a row for its reason, too.
+    let checks = match (needed.checks, is_narrow) {
+        (0, true) => wish(Pane::Checks, 3, 5),
+        (0, false) if area.height >= TALL => wish(Pane::Checks, 4, 5),
+        (0, false) => wish(Pane::Checks, 4, 8),
+        (bad, true) => wish(Pane::Checks, bad.min(7), bad.min(7)),
+        (bad, false) => wish(Pane::Checks, bad.clamp(4, 7), bad.max(5)),
+    };
+    let kept = promise.least + if needed.checks > 0 && is_narrow { checks.least } else { 0 };
+    let state = needed.state.clamp(5, area.height.saturating_sub(kept).max(5));
+    let state = wish(Pane::Plan, state, state.max(6));
+    if is_narrow {
         placed.extend(match pane {
             Pane::LeftOut | Pane::Checks | Pane::Parameters => {
                 stack(side, &[wish(pane, 8, side.height), wish(Pane::Plan, 5, 6)])
             }
-            _ => stack(side, &[state, promise, wish(Pane::Checks, 3, 5)]),
+            _ if needed.checks > 0 => stack(side, &[state, checks, Wish { least: 6, ..promise }]),
+            _ => stack(side, &[state, promise, checks]),
         });
         return placed;
     }
-    let panes = if area.height >= TALL {
+    let (left_out, parameters) = if area.height >= TALL {
         // The curve gets what the lists do not need.
-        [state, promise, wish(Pane::LeftOut, 4, 10), wish(Pane::Checks, 4, 5), wish(Pane::Parameters, 3, 10)]
+        (wish(Pane::LeftOut, 4, 10), wish(Pane::Parameters, 3, 10))
     } else {
-        [state, promise, wish(Pane::LeftOut, 4, 12), wish(Pane::Checks, 4, 8), wish(Pane::Parameters, 3, 14)]
+        (wish(Pane::LeftOut, 4, 12), wish(Pane::Parameters, 3, 14))
     };
-    placed.extend(stack(side, &panes));
+    placed.extend(stack(side, &[state, promise, checks, left_out, parameters]));
     placed
 }
 

@@ -7,7 +7,7 @@ use crate::actions::context::Context::{self, Cursor, Map, On, Pan, Replay, Rows}
 use crate::actions::{Action, ActionId, action};
 use crate::keys::Key;
 use crate::model::{Model, Pane, ui::Arrangement};
-use crate::update::{Effect, act, alarms, events, go, offer, place, review};
+use crate::update::{Effect, act, alarms, events, go, offer, place, review, stations};
 use crate::view::{self, look::Look, scroll::Extent};
 use ratatui::{Frame, layout::Rect};
 use serde::{Deserialize, Serialize};
@@ -109,8 +109,7 @@ const ROWS: &[Row] = &[
         ..row(shows(Screen::Plan, "plan", "Screen 2: the plan before the start", &[Key::Char('2')]).when(offer::is_open), "Plan",
             &[&[On(Screen::Plan), Map, Pan], &[On(Screen::Plan), Map, Rows], &[On(Screen::Plan), Map], &[Map, Pan, Cursor]],
             view::plan::draw) },
-    Row { first: ActionId::Hold, active: of_mission, opens: |m| (m.ui.pane == Pane::Events).then_some("open"), enter: events::enter,
-        select: |m, by| m.ui.events.select(by),
+    Row { first: ActionId::Hold, active: of_mission, opens: opens_on_mission, enter: enter_on_mission, select: select_on_mission,
         ..row(shows(Screen::Mission, "mission", "Screen 3: the mission", &[Key::Char('3')]).when(offer::is_open), "Mission",
             &[&[On(Screen::Mission), Map, Pan], &[On(Screen::Mission), Map, Rows], &[On(Screen::Mission), Map],
               &[On(Screen::Mission), Map, Pan, Cursor],
@@ -152,10 +151,27 @@ fn of_mission(model: &Model) -> usize {
     let here = match model.ui.pane {
         _ if model.ui.cursor.is_some() => 3,
         Pane::Map => 0,
-        Pane::Events => 1,
+        Pane::Events | Pane::Stations => 1,
         _ => 2,
     };
     here + if model.live.is_replay() { 4 } else { 0 }
+}
+
+/// The label of Enter on the mission screen.
+fn opens_on_mission(model: &Model) -> Option<&'static str> {
+    match model.ui.pane {
+        Pane::Events => Some("open"),
+        Pane::Stations => stations::opens(model),
+        _ => None,
+    }
+}
+
+fn enter_on_mission(model: &mut Model) -> Vec<Effect> {
+    if model.ui.pane == Pane::Stations { stations::open(model) } else { events::enter(model) }
+}
+
+fn select_on_mission(model: &mut Model, by: isize) {
+    if model.ui.pane == Pane::Stations { stations::select(model, by) } else { model.ui.events.select(by) }
 }
 
 /// The screen-specific contexts.

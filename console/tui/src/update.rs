@@ -196,6 +196,8 @@ fn stop(model: &mut Model) -> Vec<Effect> {
 /// answer has not read the question, and a later Enter must not confirm it.
 fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
     match model.ui.overlay {
+        // Esc closes what is open; pressed once more, it is no mistake.
+        Overlay::None if key == Key::Esc => {}
         Overlay::None => {
             let accept = find::row(ActionId::Accept);
             let is_accept = accept.is_some_and(|row| model.console.keys.of(row).contains(&key));

@@ -156,6 +156,9 @@ pub(crate) fn mission(look: &Look, frame: &mut Frame, area: Rect, arrangement: A
         .filter(|pane| matches!(pane, Pane::Stations | Pane::Tether | Pane::Coverage));
     let shown = Shown { turned, ..Shown::of(look.run, missed::account(look).is_some()) };
     let mut panes = layout::mission(area, size, shown);
+    if look.model.ui.shows_one() {
+        panes = vec![(look.model.ui.pane, area)];
+    }
     if panes.is_empty() {
         panes = layout::page(area, look.model.ui.pane, shown);
     }

@@ -79,7 +79,11 @@ impl Explained for MissReason {
             Self::DeadChannel => {
                 format!("passed while {near} was dead, up to {value_m:.2} m from scanned floor")
             }
-            Self::FoundObstacle => format!("{} from {near}, found during the run", measure.range()),
+            Self::FoundObstacle => {
+                // The obstacles that a run finds are named `found 1`, `found 2` and so on.
+                let near = near.strip_prefix("found ").unwrap_or(near);
+                format!("{} from obstacle {near}, found on the way", measure.range())
+            }
             Self::NotAsked => format!("not requested, up to {value_m:.2} m outside the requested areas"),
             Self::Narrow => {
                 format!("outside the outermost lane by {value_m:.2} m (lane width {limit_m:.2} m)")

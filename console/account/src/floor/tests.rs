@@ -288,7 +288,7 @@ fn the_critical_zone_is_named_as_not_done_with_the_reason() {
     let (grid, evidence) = scanned(&run, 14);
     let zone = account(&run, &grid, &evidence).critical_zone;
     assert!(!zone.done && zone.scanned.is_some_and(|share| share < 0.05), "{zone:?}");
-    assert_eq!(zone.why.as_deref(), Some("none of it scanned"));
+    assert_eq!(zone.why.as_deref(), Some("not scanned"));
     let arcs_m: f64 = zone.arcs.iter().map(|arc| arc.not_done_m).sum();
     let by_plate_m: f64 = zone.plates.iter().map(|plate| plate.length_m).sum();
     assert!(

@@ -103,7 +103,7 @@ impl CriticalZone {
         let why = match gap_m {
             _ if done => None,
             _ if !has_floor => Some("no free floor at the shell".to_owned()),
-            _ if scanned <= 0.0 => Some("none of it scanned".to_owned()),
+            _ if scanned <= 0.0 => Some("not scanned".to_owned()),
             gap_m => {
                 let rest = if gap_m >= CRITICAL_ZONE_M - 1e-9 {
                     "the rest mostly unscanned".to_owned()

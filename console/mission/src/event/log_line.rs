@@ -125,7 +125,7 @@ impl Event {
                 line(
                     Severity::Watch,
                     "map",
-                    format!("new obstacle at {:.2}, {:.2} m, not on the drawing", at.x, at.y),
+                    format!("obstacle at {:.2}, {:.2} m, not on the drawing", at.x, at.y),
                 )
             }
             EventKind::ZoneDrawn { zone } => {
@@ -341,8 +341,8 @@ mod tests {
             kind: EventKind::PlannerLate { planner: "rpf".into(), ticks },
         };
         let text = |ticks| late(ticks).log_line(&[]).map(|line| line.text).unwrap_or_default();
-        assert_eq!(text(1), "planner rpf answered 1 tick late; the robot stood still");
-        assert_eq!(text(2), "planner rpf answered 2 ticks late; the robot stood still");
+        assert_eq!(text(1), "planner rpf was late; the robot waited 1 tick");
+        assert_eq!(text(2), "planner rpf was late; the robot waited 2 ticks");
     }
     #[test]
     fn a_station_is_called_by_its_name() {

@@ -422,7 +422,7 @@ fn what_was_found_in_several_runs_is_named_by_its_run_in_every_format() {
     );
     assert!(map.contains(r#""number":2,"plate""#) && map.contains(r#""run":"20261122T050132Z-b""#), "{map}");
     let reasons: String = document.floor.missed.iter().map(account::Area::why).collect();
-    assert!(reasons.contains("from found 1 of run 2, found during the run"), "{reasons}");
+    assert!(reasons.contains("from obstacle 1 of run 2, found on the way"), "{reasons}");
     // In a report on a single run, the names need no run number.
     let [run, _] = two_runs();
     let alone = Document::new(std::slice::from_ref(&run), Context::default()).unwrap();

@@ -299,8 +299,13 @@ impl Run {
     }
 
     fn moved(&mut self, id: ObstacleId, obstacle: &Obstacle) {
+        let moved_before = self.finds_only_moving();
         if let Some((found, moves)) = self.found_at.get_mut(&id) {
             *moves |= (obstacle.shape.center() - *found).norm() > MOVES_M;
+        }
+        if self.finds_only_moving() && !moved_before {
+            self.alarms
+                .reword(&Cause::Map, |text| text.replacen("obstacle at", "moving obstacle, found at", 1));
         }
         let found = self.about.iter_mut().flat_map(|about| &mut about.world.obstacles);
         for other in found.filter(|other| !other.known && other.id == id) {

@@ -25,6 +25,13 @@ pub struct History {
     slot: u64,
 }
 
+/// The next shorter or longer span of curves, seconds; the same one if it is the last.
+pub(crate) fn stepped_span_s(span_s: usize, longer: bool) -> usize {
+    let at = SPANS_S.iter().position(|known| *known == span_s).unwrap_or(SPANS_S.len() - 1);
+    let at = if longer { (at + 1).min(SPANS_S.len() - 1) } else { at.saturating_sub(1) };
+    SPANS_S[at]
+}
+
 impl History {
     /// Adds a value at a mission time, seconds; times do not decrease.
     pub fn add(&mut self, t_s: f64, value: f64) {

@@ -95,6 +95,9 @@ pub struct Attention {
     pub kind: String,
     /// The information, as a sentence.
     pub text: String,
+    /// The name of the past run that it is about, if it is about one.
+    #[serde(default)]
+    pub run: Option<String>,
 }
 
 /// The contents of the disk.
@@ -153,7 +156,7 @@ pub struct Home {
     /// Whether the whole text of the selected attention item is shown.
     #[serde(default)]
     pub is_read: bool,
-    /// The filter: text that the names in the lists must contain.
+    /// The filter: words that must all occur in a listed scenario or run.
     pub filter: String,
     /// Details of the past runs that were selected.
     #[serde(default)]
@@ -164,18 +167,34 @@ impl Home {
     /// The scenarios that pass the filter.
     pub fn scenarios(&self) -> Vec<&ScenarioEntry> {
         let all = self.found.iter().flat_map(|found| &found.scenarios);
-        all.filter(|entry| self.passes(&[&entry.name, &entry.task, &entry.planner])).collect()
+        let last = |entry: &ScenarioEntry| self.last_end(&entry.name).map_or("", |run| run.end.as_str());
+        all.filter(|entry| {
+            let state = if entry.problem.is_some() { "INVALID" } else { last(entry) };
+            self.passes(&[&entry.name, &entry.task, &entry.planner, state])
+        })
+        .collect()
     }
 
     /// The past runs that pass the filter.
     pub fn runs(&self) -> Vec<&PastRun> {
         let all = self.found.iter().flat_map(|found| &found.runs);
-        all.filter(|run| self.passes(&[&run.name, &run.end])).collect()
+        all.filter(|run| {
+            let words = run.remark.as_deref().unwrap_or_default();
+            self.passes(&[&run.name, &run.scenario, &run.planner, &run.end, words])
+        })
+        .collect()
     }
 
+    /// Whether every word of the filter occurs in one of the texts.
     fn passes(&self, texts: &[&str]) -> bool {
         let filter = self.filter.to_lowercase();
-        filter.is_empty() || texts.iter().any(|text| text.to_lowercase().contains(&filter))
+        filter.split_whitespace().all(|word| texts.iter().any(|text| text.to_lowercase().contains(word)))
+    }
+
+    /// The item of the attention list that is selected.
+    pub(crate) fn selected_attention(&self) -> Option<&Attention> {
+        let all = &self.found.as_ref()?.attention;
+        all.get(self.attention.min(all.len().checked_sub(1)?))
     }
 
     /// The newest run of a scenario, which shows how the scenario last ended.

@@ -161,12 +161,12 @@ impl Model {
                 let what = match self.live.left_out_by_plan() {
                     Some(left_out) => {
                         let scanned = percent_text(left_out.scanned(), 1);
-                        format!("with it, the run scans {scanned} % of the requested floor")
+                        format!("scans {scanned} % of requested")
                     }
                     None if plan.complete => "the whole task".to_owned(),
                     None => "only part of the task".to_owned(),
                 };
-                check("plan", outcome, format!("{:.1} m, {what}; made on the way", plan.length_m))
+                check("plan", outcome, format!("{what}; made on the way, {:.1} m", plan.length_m))
             }
             (Some(plan), None) if plan.complete => {
                 let left_out = self.live.left_out().filter(|left_out| !left_out.areas.is_empty());
@@ -181,7 +181,7 @@ impl Model {
                     }
                     None => "only part of the task".to_owned(),
                 };
-                check("plan", CheckOutcome::Warning, format!("{:.1} m, {what}", plan.length_m))
+                check("plan", CheckOutcome::Warning, format!("{what}; {:.1} m", plan.length_m))
             }
             (None, None) => check(
                 "plan",

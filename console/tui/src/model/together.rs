@@ -95,6 +95,9 @@ pub struct Earlier {
     pub raster: Raster,
     /// The cells that the re-scan is to scan; `None` if it is to scan all of the floor.
     asked: Option<Vec<bool>>,
+    /// The cells that none of the runs had to scan; empty if the whole floor was requested.
+    #[serde(default)]
+    not_requested: Vec<CellRun>,
 }
 
 impl Earlier {
@@ -105,17 +108,21 @@ impl Earlier {
             TaskConfig::Cover { regions, .. } => cells_within(own.floor(), regions),
             TaskConfig::Goto { .. } | TaskConfig::Follow { .. } | TaskConfig::Survey { .. } => None,
         };
-        Self { runs: combination.earlier.clone(), raster, asked }
+        let not_requested = combination.not_requested.clone();
+        Self { runs: combination.earlier.clone(), raster, asked, not_requested }
     }
 
     /// Two shares: of the floor that the re-scan was to scan, as far as the re-scan alone has scanned it, and of the
-    /// reachable floor, as far as all runs together have scanned it.
+    /// reachable floor that any run was to scan, as far as all runs together have scanned it.
     ///
     /// Cost: a look at every cell.
     pub fn shares(&self, own: &Raster) -> [Shares; 2] {
         let is_asked = |cell: usize| self.asked.as_ref().is_none_or(|asked| asked.get(cell) == Some(&true));
         let (requested, mut all) = (own.counts_of(is_asked), Counts::default());
-        for cell in 0..own.floor().len() {
+        let mut is_left_out = vec![false; own.floor().len()];
+        mark(&self.not_requested, &mut is_left_out);
+        let asked_now = |cell: usize| self.asked.is_some() && is_asked(cell);
+        for cell in (0..own.floor().len()).filter(|cell| !is_left_out[*cell] || asked_now(*cell)) {
             let (kind, is_scanned) = (own.floor().kind(cell), own.is_scanned(cell));
             let kind = match self.raster.floor().kind(cell) {
                 Cell::Reachable => kind,
@@ -156,6 +163,28 @@ mod tests {
     }
 
     #[test]
+    fn floor_that_no_run_had_to_scan_is_not_missed() {
+        let boundary = Boundary::Circle { radius_m: 3.0 };
+        let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+        let floor = Floor::new(&tank, 0.1, 0.3, 0.6, Point::origin());
+        let (half, all) = ((floor.len() / 2) as u32, floor.len() as u32);
+        let own = Raster::new(floor.clone());
+        let mut earlier = Earlier {
+            runs: vec!["first".into()],
+            raster: joined(&own, &[], &[CellRun(0, half)]),
+            asked: Some((0..floor.len()).map(|cell| cell < half as usize).collect()),
+            not_requested: vec![CellRun(half, all - half)],
+        };
+        let missed = |earlier: &Earlier| earlier.shares(&own)[1].percent.missed;
+        assert!(missed(&earlier).abs() < 1e-9, "{}", missed(&earlier));
+        // What this re-scan is to scan counts although no run before it had to scan it.
+        earlier.asked = Some((0..floor.len()).map(|cell| cell >= half as usize).collect());
+        assert!((missed(&earlier) - 50.0).abs() < 2.0, "{}", missed(&earlier));
+        earlier.not_requested.clear();
+        assert!((missed(&earlier) - 50.0).abs() < 2.0, "{}", missed(&earlier));
+    }
+
+    #[test]
     fn a_re_scan_counts_its_own_floor_and_that_of_all_runs() {
         let boundary = Boundary::Circle { radius_m: 3.0 };
         let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
@@ -166,6 +195,7 @@ mod tests {
             runs: vec!["first".into()],
             raster: joined(&own, &[], &[CellRun(0, half)]),
             asked: Some((0..floor.len()).map(|cell| cell >= half as usize).collect()),
+            not_requested: Vec::new(),
         };
         let percent = |own: &Raster| earlier.shares(own).map(|shares| shares.percent.scanned);
         // Floor scanned on the way, which was not requested, does not count.

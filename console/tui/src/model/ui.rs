@@ -8,6 +8,7 @@ pub use map_view::{Layers, MAX_ZOOM, MapLayer, MapView};
 pub use overlay::{Ask, Edit, Overlay, Purpose, Shelving};
 pub use pane::{Chart, MissionParts, Pane};
 
+use super::history::HISTORY_S;
 use super::{Cause, EventList};
 use crate::screens::Screen;
 use crate::theme::ThemeName;
@@ -48,6 +49,15 @@ pub struct Ui {
     /// The index of the selected area in the list of what the plan leaves out.
     #[serde(default)]
     pub left_out: usize,
+    /// Whether the mission screen shows one pane alone.
+    #[serde(default)]
+    pub is_alone: bool,
+    /// The longest time that a chart shows, seconds of mission time.
+    #[serde(default = "whole_history")]
+    pub span_s: usize,
+    /// The index of the selected station in the table of the stations.
+    #[serde(default)]
+    pub station: usize,
     /// The index of the selected plugin on the plugins screen.
     pub plugin: usize,
     /// The map cursor, metres, tank frame; `None` without a cursor.
@@ -68,6 +78,10 @@ pub struct Ui {
     pub overlay: Overlay,
 }
 
+fn whole_history() -> usize {
+    HISTORY_S
+}
+
 impl Default for Ui {
     fn default() -> Self {
         Self {
@@ -84,6 +98,9 @@ impl Default for Ui {
             parts: MissionParts::default(),
             in_detail: false,
             left_out: 0,
+            is_alone: false,
+            span_s: HISTORY_S,
+            station: 0,
             plugin: 0,
             cursor: None,
             mouse: false,
@@ -166,6 +183,11 @@ impl Ui {
         }
     }
 
+    /// Whether the mission screen shows one pane on the whole screen.
+    pub(crate) fn shows_one(&self) -> bool {
+        self.is_alone && self.screen == Screen::Mission && self.arrangement() != Arrangement::Strip
+    }
+
     /// The pane to which the arrow keys apply.
     pub fn focus(&self) -> Pane {
         match self.panes() {
@@ -186,6 +208,9 @@ impl Ui {
         if self.screen == Screen::Result && !self.panes().is_empty() {
             let is_beside = pane == Pane::Map && self.arrangement() == Arrangement::Wide;
             return self.pane == pane || is_beside && self.pane != Pane::Plates;
+        }
+        if self.shows_one() {
+            return self.pane == pane;
         }
         if self.screen != Screen::Mission {
             let is_paged = self.screen == Screen::Plan && self.arrangement() == Arrangement::Paged;
@@ -221,6 +246,7 @@ impl Ui {
             (Screen::Alarms | Screen::Events | Screen::Review | Screen::Plugins, arrangement) => {
                 return if arrangement == Arrangement::Strip { &[] } else { &Pane::OF_LIST };
             }
+            (Screen::Mission, _) if self.shows_one() => return self.parts.alone(),
             (Screen::Mission, _) => {}
             _ => return &[],
         }
@@ -236,6 +262,7 @@ impl Ui {
     /// more than one at a time.
     pub fn numbered_panes(&self) -> &'static [Pane] {
         match self.panes() {
+            _ if self.shows_one() => &[],
             panes @ [_, _, ..] if self.arrangement() == Arrangement::Wide => panes,
             _ => &[],
         }

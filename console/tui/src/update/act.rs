@@ -186,6 +186,18 @@ pub(crate) fn turn_to(model: &mut Model, by: isize) {
     turn_to_pane(model, panes.get(next).copied().unwrap_or(Pane::Map));
 }
 
+/// Shows the pane with the focus alone on the mission screen, or all panes again.
+pub(crate) fn show_alone(model: &mut Model) {
+    model.ui.is_alone = !model.ui.is_alone;
+    if !model.ui.panes().contains(&model.ui.pane) {
+        model.ui.pane = Pane::Map;
+    }
+    if model.ui.is_alone {
+        let keys = model.console.keys.spelled("<next-pane>: next pane and charts; <full-pane>: all panes");
+        model.hint(keys);
+    }
+}
+
 /// Goes to the pane with a number, from 1.
 pub(crate) fn turn_to_number(model: &mut Model, number: u8) {
     if model.ui.screen == Screen::Home {

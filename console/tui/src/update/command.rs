@@ -1,6 +1,7 @@
 //! Parses and runs command lines: a command and its values.
 
 pub(super) mod line;
+pub(super) mod so_far;
 mod value;
 
 pub(super) use value::Value;

@@ -198,9 +198,13 @@ pub(super) fn named_run(model: &Model) -> Option<String> {
     (model.ui.screen.row().run)(model)
 }
 
-/// The run selected in the list of runs on the home screen.
+/// The run selected on the home screen: in the list of runs, or the one that the selected item of Attention is about.
 pub(crate) fn run_at_home(model: &Model) -> Option<String> {
-    if model.home.list == HomeList::Runs { selected_run(model) } else { None }
+    match model.home.list {
+        HomeList::Runs => selected_run(model),
+        HomeList::Attention => model.home.selected_attention()?.run.clone(),
+        HomeList::Scenarios => None,
+    }
 }
 
 /// Requests the details of the selected run, if there is room to show them. While the robot moves, the disk and the

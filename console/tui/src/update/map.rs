@@ -1,6 +1,7 @@
 //! The operator's view of the map: zoom, position, cursor.
 
 use super::offer::demand;
+use crate::model::history::stepped_span_s;
 use crate::model::ui::{MAX_ZOOM, MapView};
 use crate::model::{Model, Pane};
 use world::{Point, Vector};
@@ -23,8 +24,39 @@ pub(crate) fn can_pan(model: &Model) -> Result<(), String> {
     demand(moves, "the whole tank is shown; <zoom-in>: zoom in first")
 }
 
+/// Checks that the map can be zoomed or, while a chart is shown alone, the time that charts show.
+pub(crate) fn can_zoom(model: &Model, into: bool) -> Result<(), String> {
+    if shows_chart(model) {
+        let (span_s, other_s) = (model.ui.span_s, stepped_span_s(model.ui.span_s, !into));
+        return demand(
+            span_s != other_s,
+            if into { "the shortest time is shown" } else { "all times are shown" },
+        );
+    }
+    is_shown(model)?;
+    if into {
+        demand(model.ui.map.zoom < MAX_ZOOM, "already at maximum zoom")
+    } else {
+        demand(model.ui.map.zoom > 0, "the whole tank is already shown")
+    }
+}
+
+/// Zooms the map about its centre or, while a chart is shown alone, the time that charts show.
+pub(crate) fn zoom_shown(model: &mut Model, into: bool) {
+    if shows_chart(model) {
+        model.ui.span_s = stepped_span_s(model.ui.span_s, !into);
+    } else {
+        zoom(model, if into { 1 } else { -1 });
+    }
+}
+
+/// Whether the mission screen shows a chart alone.
+fn shows_chart(model: &Model) -> bool {
+    matches!(model.ui.pane, Pane::Chart(_)) && model.ui.shows_one()
+}
+
 /// Zooms the map about its centre.
-pub(crate) fn zoom(model: &mut Model, by: i8) {
+fn zoom(model: &mut Model, by: i8) {
     let map = &mut model.ui.map;
     map.zoom = map.zoom.saturating_add_signed(by).min(MAX_ZOOM);
     if map.zoom == 0 {

@@ -1,6 +1,6 @@
 //! The command line: suggestions, completion, history, and running what was typed.
 
-use super::command::{self, line};
+use super::command::{self, line, so_far};
 use super::message::Effect;
 use super::offer::{offered, refuse};
 use super::overlay::open;
@@ -198,7 +198,17 @@ pub(super) fn complete(model: &mut Model) {
         }
         None => return,
     }
-    model.ui.overlay = Overlay::Commands(Palette { selected: 0, fault: None, ..palette });
+    model.ui.overlay = Overlay::Commands(Palette { selected: 0, ..palette });
+    judge(model);
+}
+
+/// Marks a value of the typed line that is wrong, whatever is typed next.
+pub(super) fn judge(model: &mut Model) {
+    let Overlay::Commands(palette) = &model.ui.overlay else { return };
+    let fault = so_far::fault(model, palette.line.text(), palette.line.before());
+    if let Overlay::Commands(palette) = &mut model.ui.overlay {
+        palette.fault = fault;
+    }
 }
 
 /// Moves through the history: from the first line of the list, Up goes back, and Down goes forward; returns whether
@@ -213,5 +223,6 @@ pub(super) fn recalls(model: &mut Model, by: isize) -> bool {
     let line = recalled.checked_sub(1).and_then(|back| model.console.history.iter().rev().nth(back));
     let line = line.map_or("", String::as_str);
     *palette = Palette { help: palette.help, recalled, ..Palette::begun(line) };
+    judge(model);
     true
 }

@@ -1,11 +1,13 @@
 //! The operator's actions on AE stations: excluding a station, using it again, making a simulated one fail.
 
 use super::command::Value;
-use super::offer::{accepted, demand};
+use super::message::Effect;
+use super::offer::{accepted, demand, refuse};
 use crate::actions::ActionId;
-use crate::model::Model;
+use crate::model::{Model, Overlay, Palette, Pane};
 use mission::{Injection, Order, RangeFault};
-use world::StationId;
+use positioning::Exclusion;
+use world::{Station, StationId};
 
 /// Checks that an action on a station is possible now.
 ///
@@ -21,6 +23,39 @@ pub(crate) fn can(model: &Model, id: ActionId) -> Result<(), String> {
         _ => Order::UseStation { station, used: true, by: None },
     };
     accepted(model, &order)
+}
+
+/// The station selected in the table, if the arrow keys apply to the table.
+fn selected(model: &Model) -> Option<&Station> {
+    let stations = model.live.run.stations();
+    let last = stations.len().checked_sub(1)?;
+    stations.get(model.ui.station.min(last)).filter(|_| model.ui.focus() == Pane::Stations)
+}
+
+/// Moves the selection down by `by` stations.
+pub(crate) fn select(model: &mut Model, by: isize) {
+    let last = model.live.run.stations().len().saturating_sub(1);
+    model.ui.station = model.ui.station.min(last).saturating_add_signed(by).min(last);
+}
+
+/// The command that Enter offers for the selected station: to exclude it or, if it is excluded, to use it again; `None` if
+/// the mission accepts neither.
+pub(crate) fn opens(model: &Model) -> Option<&'static str> {
+    let station = selected(model)?;
+    let fix = model.live.run.position.fix.as_ref();
+    let is_excluded = fix.is_some_and(|fix| fix.excluded.contains(&(station.id, Exclusion::ByOrder)));
+    let (id, word) =
+        if is_excluded { (ActionId::Include, "include") } else { (ActionId::Exclude, "exclude") };
+    can(model, id).ok().map(|()| word)
+}
+
+/// Opens the command line with the command for the selected station; Enter there runs it.
+pub(crate) fn open(model: &mut Model) -> Vec<Effect> {
+    let (Some(word), Some(station)) = (opens(model), selected(model)) else {
+        return refuse(model, "no station is selected".into());
+    };
+    let line = format!("{} {}", word, station.name);
+    super::overlay::open(model, Overlay::Commands(Palette::begun(&line)))
 }
 
 /// The order for a command about a station; `None` if a value is missing.

@@ -106,7 +106,10 @@ fn line(overlay: &mut Overlay) -> Option<&mut LineEdit> {
 
 fn changed(model: &mut Model) {
     match &mut model.ui.overlay {
-        Overlay::Commands(palette) => (palette.selected, palette.recalled, palette.fault) = (0, 0, None),
+        Overlay::Commands(palette) => {
+            (palette.selected, palette.recalled) = (0, 0);
+            palette::judge(model);
+        }
         Overlay::Parameters { edit: Some(edit), .. } => edit.refusal = None,
         Overlay::Shelve(shelving) => shelving.refusal = None,
         Overlay::Filter(line) => {

@@ -169,7 +169,12 @@ fn beside(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
     let own = (alarm.events.len() as u16 + 2).clamp(EVENTS, below.height.div_ceil(2));
     let [own, around] = Layout::vertical([Constraint::Length(own), Constraint::Fill(1)]).areas(below);
     draw_events(look, frame, own, alarm);
+    // Rows that the events do not need show the figures that are watched, as curves.
+    let spare = around.height.saturating_sub(before::rows(look, around, alarm));
+    let spare = if spare < watched::LEAST_CURVE { 0 } else { spare };
+    let [around, curves] = Layout::vertical([Constraint::Fill(1), Constraint::Length(spare)]).areas(around);
     before::draw(look, frame, around, alarm);
+    watched::curves_alone(look, frame, curves);
     let columns = usize::from(right.width) - 2;
     let (detail, actions) = (detail::lines(look, alarm, columns), actions::lines(look, alarm, columns));
     let chart = if is_charted(alarm) { CHART.1 } else { 0 };

@@ -24,13 +24,9 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let inner = block.inner(area);
     let (columns, height) = (usize::from(inner.width), usize::from(inner.height));
     if alarms.is_empty() {
-        let mut lines = vec![look.line([(Role::Dim, " No alarms.".into())])];
-        let warnings = events::in_rows(last_warnings(look), (columns, height.saturating_sub(2)));
-        if !warnings.is_empty() {
-            lines.push(look.line([(Role::Dim, " The last warnings:".into())]));
-        }
-        lines.extend(warnings.into_iter().map(|parts| look.line(parts)));
-        return fill(frame, area, block, lines);
+        let none = vec![(Role::Dim, " No alarms.".to_owned())];
+        let lines = std::iter::once(none).chain(warnings(look, columns, height.saturating_sub(1)));
+        return fill(frame, area, block, lines.map(|row| look.line(row)).collect());
     }
     let each: Vec<Vec<Parts>> = alarms.iter().map(|alarm| rows(look, alarm, columns)).collect();
     let mut spare = height.saturating_sub(each.iter().map(Vec::len).sum());
@@ -43,8 +39,16 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         lines.extend(rows);
         lines.extend(about.into_iter().map(|words| vec![(Role::Dim, format!("   {words}"))]));
     }
+    lines.extend(warnings(look, columns, spare));
     lines.truncate(height);
     fill(frame, area, block, lines.into_iter().map(|row| look.line(row)).collect());
+}
+
+/// The last warnings with their heading, in a number of rows; empty if not even one warning fits.
+fn warnings(look: &Look, columns: usize, rows: usize) -> Vec<Parts> {
+    let warnings = events::in_rows(last_warnings(look), (columns, rows.saturating_sub(1)));
+    let heading = (!warnings.is_empty()).then(|| vec![(Role::Dim, " The last warnings:".to_owned())]);
+    heading.into_iter().chain(warnings).collect()
 }
 
 /// The rows of an alarm: state first, then the text beside it or, in a narrow pane, below it.

@@ -3,7 +3,7 @@
 use super::look::Look;
 use super::map::{Pattern, Stroke, Window};
 use super::text;
-use crate::model::history::{HISTORY_S, SLOT_S};
+use crate::model::history::SLOT_S;
 use crate::model::{History, Pane, Tether, ui::Chart};
 use crate::theme::Role;
 use ratatui::Frame;
@@ -50,7 +50,7 @@ fn note(look: &Look, series: &Series, area: Rect) -> String {
     let last = series.now.or_else(|| series.values.last(SLOT_S).last());
     let now = last.map_or_else(String::new, |last| format!("{when} {}, ", said(last)));
     let limit = series.limit.map_or_else(String::new, |limit| format!("limit {}, ", said(limit)));
-    let minutes = text::minutes(series.values, HISTORY_S);
+    let minutes = text::minutes(series.values, look.model.ui.span_s);
     text::wording([format!("{now}{limit}{minutes}"), format!("{limit}{minutes}"), minutes], room)
 }
 
@@ -111,7 +111,7 @@ fn series<'a>(look: &Look<'a>, chart: Chart) -> Option<Series<'a>> {
 }
 
 fn plot(look: &Look, frame: &mut Frame, area: Rect, series: &Series<'_>) {
-    let x = series.values.span_s(HISTORY_S);
+    let x = series.values.span_s(look.model.ui.span_s);
     let slots: Vec<_> =
         series.values.since(x[0]).map(|(t_s, value)| value.map(|value| Point::new(t_s, value))).collect();
     let stretches = slots.split(Option::is_none).map(|points| points.iter().flatten().copied().collect());

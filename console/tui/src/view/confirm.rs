@@ -17,7 +17,10 @@ use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
 use ratatui::widgets::Paragraph;
+use world::beside_limit;
 
+/// A clearance that is smaller than the required one by less than this counts as kept, metres: lengths on a grid are rounded.
+const CLEARANCE_SLACK_M: f64 = 0.005;
 /// The rows of the screen that an open question leaves: the top line, a row of the screen, the state and the keys.
 const OTHER_ROWS: usize = 4;
 
@@ -183,7 +186,7 @@ fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
         }
         Overlay::Finish { .. } | Overlay::Confirm(Ask::DriveBack) => {
             let way = match &model.live.way_back {
-                Some(Ok(way)) => format!("{}. The mission ends there.", finish_way(way)),
+                Some(Ok(way)) => format!("{}. The mission ends there.", finish_way(model, way)),
                 _ => "Looking for a way back...".into(),
             };
             vec![
@@ -269,11 +272,20 @@ fn shadows_plan(model: &Model, shadow: &Shadow) -> String {
     format!("{length}{certificate}")
 }
 
-/// The length and clearance of a way back: `To the anchor, 5.5 m, clearance 0.12 m`.
-pub(super) fn finish_way(way: &WayBack) -> String {
-    let (length, clearance) = (text::number(way.length_m, 1), text::number(way.clearance_m, 2));
+/// The length and clearance of a way back: `To the anchor, 5.5 m, clearance 0.12 m`. A clearance below the required one says
+/// so.
+pub(super) fn finish_way(model: &Model, way: &WayBack) -> String {
+    let required_m = model.live.run.about.as_ref().map(|about| about.mission.clearance_m);
+    let [clearance, required] = beside_limit(way.clearance_m, required_m.unwrap_or(f64::NAN), 2);
+    let is_below = required_m.is_some_and(|required_m| way.clearance_m + CLEARANCE_SLACK_M < required_m);
+    let clearance = if is_below {
+        format!("clearance {clearance} m, BELOW the required {required} m")
+    } else {
+        format!("clearance {} m", text::number(way.clearance_m, 2))
+    };
+    let length = text::number(way.length_m, 1);
     let beside = if way.slack_m.is_some() { ", slowly beside the tether on the floor" } else { "" };
-    format!("To the {}, {length} m, clearance {clearance} m{beside}", way.to.word())
+    format!("To the {}, {length} m, {clearance}{beside}", way.to.word())
 }
 
 /// Where the robot must stand before a re-scan, as a sentence; `None` if it was left there.
@@ -287,12 +299,11 @@ pub(super) fn begins(model: &Model) -> Option<String> {
     let resumption = model.live.left_out()?.resumption?;
     let (at, again_m2) = (text::place(resumption.at), text::number(resumption.again_m2, 1));
     let after_m = text::number(resumption.after_m, 1);
+    let place = if after_m == "0.0" { "the start".to_owned() } else { format!("{at}, after {after_m} m") };
     Some(if model.live.is_rescan() {
-        format!("The scan resumes at {at}, after {after_m} m; {again_m2} m² are scanned a second time.")
+        format!("The scan resumes at {place}; {again_m2} m² are scanned a second time.")
     } else {
-        format!(
-            "The scan begins at {at}, after {after_m} m; {again_m2} m² that were not requested are scanned, too."
-        )
+        format!("The scan begins at {place}; {again_m2} m² that were not requested are scanned, too.")
     })
 }
 
@@ -340,7 +351,8 @@ fn zone_cost(model: &Model) -> String {
     let offer = if cost.drops_offer { " The better plan is dropped." } else { "" };
     let back = if cost.blocks_way_back { "It blocks the way back along the tether. " } else { "" };
     format!(
-        "{held}{back}{path} It closes {closed} m² of reachable floor, {lost} m² of which is not scanned yet.{offer}"
+        "{held}{back}{path} It closes {closed} m² of reachable floor, {lost} m² of which is not scanned yet.{offer} \
+         The zone stays closed for the rest of the mission."
     )
 }
 

@@ -170,7 +170,7 @@ impl Bases {
                 shares: raster.map(|own| of_rescan(before, own)),
                 names: ["requested", "all runs"],
                 short: ["requested", "all runs"],
-                floors: ["requested floor", "reachable floor with the runs before"],
+                floors: ["requested floor", "floor requested of all runs"],
             },
             None if live.run.is_in_part() => Self {
                 shares: raster.and_then(|own| Some([of_part(&live.run)?, own.reachable()])),

@@ -38,7 +38,11 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
             stack(look, frame, area, (found, true, rows));
         }
         Arrangement::Narrow => {
-            let rows = shares(area.height, list, wanted(look, area.width, (found, true)));
+            let mut rows = shares(area.height, list, wanted(look, area.width, (found, true)));
+            // The whole text of an item takes the rows that the other lists can spare.
+            if list == HomeList::Attention && look.model.home.is_read {
+                rows = reading(area.height, wanted(look, area.width, (found, true)));
+            }
             stack(look, frame, area, (found, true, rows));
         }
         Arrangement::Wide => {
@@ -60,7 +64,7 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
             if let Some(glimpse) = glimpse {
                 run_details::events(look, frame, events, glimpse);
             }
-            about::draw(look, frame, about, found);
+            about::draw(look, frame, about);
             about::plugins(look, frame, plugins);
         }
     }
@@ -90,8 +94,7 @@ fn wanted(look: &Look, width: u16, (found, about): (&Found, bool)) -> [u16; 3] {
         // A pane with a text has a minimum height.
         (home.scenarios().len().max(1) as u16).saturating_add(3 + text).max(u16::from(about) * pane::LEAST),
         (home.runs().len().max(1) as u16).saturating_add(3 + more),
-        (found.attention.len().max(1) as u16)
-            .saturating_add(2 + attention::text_rows(look, found, width, about)),
+        (found.attention.len().max(1) as u16).saturating_add(2 + attention::text_rows(look, width, about)),
     ]
 }
 
@@ -125,6 +128,16 @@ fn shares(rows: u16, focus: HomeList, wanted: [u16; 3]) -> [u16; 3] {
     }
     given[HomeList::Runs as usize] += left;
     given
+}
+
+/// The rows of each list while the whole text of an attention item is read: the other lists keep their frames, headings
+/// and a row.
+fn reading(rows: u16, wanted: [u16; 3]) -> [u16; 3] {
+    const OTHER: u16 = 4;
+    let attention = wanted[HomeList::Attention as usize].min(rows.saturating_sub(2 * OTHER));
+    let left = rows.saturating_sub(attention);
+    let scenarios = (left / 2).max(OTHER.min(left));
+    [scenarios, left - scenarios, attention]
 }
 
 /// The rows of each list where one list fills the screen: what this list does not need goes to the others, if it is
@@ -166,22 +179,41 @@ fn note(look: &Look, list: HomeList) -> String {
     let open = found.filter(|point| point.severity > Severity::Info).count();
     let is_alone = look.model.ui.arrangement() == Arrangement::Paged;
     let is_focused = look.model.home.list == list;
+    // A small screen has no room for the key beside the filter.
+    let brief = |filter: &str| look.keys(&format!("`{}` <cancel>", text::fit(filter, 20)));
     match look.model.home.filter.as_str() {
         "" if is_focused && is_alone && open > 0 => look.keys(&format!("attention {open}, <next-pane> pane")),
         _ if !is_focused && look.model.ui.arrangement() == Arrangement::Wide => String::new(),
         _ if !is_focused => look.keys("<next-pane> pane"),
         "" => look.keys("<filter> filter"),
+        filter if is_alone => brief(filter),
         filter => look.keys(&format!("filter `{}`  <cancel> clear", text::fit(filter, 20))),
     }
 }
 
-/// What Enter does, for the state line.
-pub(super) fn enter(model: &Model) -> &'static str {
-    match model.home.list {
-        HomeList::Scenarios => "<open> opens a scenario and makes its plan.",
-        HomeList::Runs => "<open> replays the selected run.",
-        HomeList::Attention => "<open> shows the whole text.",
-    }
+/// What the keys do with the selected row, for the state line; if no row is selected, why.
+pub(super) fn next(model: &Model) -> Vec<String> {
+    let home = &model.home;
+    let is_filtered = !home.filter.is_empty();
+    let none = |what: &str| {
+        if is_filtered {
+            format!("No {what} matches the filter `{}`.", home.filter)
+        } else {
+            format!("No {what} yet.")
+        }
+    };
+    let first = match home.list {
+        HomeList::Scenarios if home.selected_scenario().is_none() => none("scenario"),
+        HomeList::Scenarios => "<open> opens a scenario and makes its plan.".into(),
+        HomeList::Runs if home.selected_run().is_none() => none("run"),
+        HomeList::Runs => "<open> replays the selected run.".into(),
+        HomeList::Attention if home.selected_attention().is_none() => "Nothing needs attention.".into(),
+        HomeList::Attention if home.is_read => "<open> closes the text.".into(),
+        HomeList::Attention => "<open> shows the whole text.".into(),
+    };
+    let run = home.selected_attention().filter(|_| home.list == HomeList::Attention);
+    let rescan = run.and_then(|point| point.run.as_ref()).map(|_| "<rescan>: re-scan the rest.".to_owned());
+    std::iter::once(first).chain(rescan).chain(["The robot does not move.".to_owned()]).collect()
 }
 
 #[cfg(test)]

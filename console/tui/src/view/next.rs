@@ -79,9 +79,7 @@ fn by_phase(model: &Model) -> Clauses {
             clauses.splice(at..at, work.into_iter().flatten());
             (Role::Hold, clauses)
         }
-        (None, Phase::Waiting) if model.ui.screen == Screen::Home => {
-            (Role::Title, vec![home::enter(model).into(), "The robot does not move.".into()])
-        }
+        (None, Phase::Waiting) if model.ui.screen == Screen::Home => (Role::Title, home::next(model)),
         (None, Phase::Waiting) if model.live.replay.is_some() => {
             (Role::Title, vec!["Before the start of the mission.".into()])
         }
@@ -169,9 +167,9 @@ fn more(model: &Model) -> impl Iterator<Item = String> {
             &["<rescan>: plan a scan of this map.", "<home>: home."]
         }
         Screen::Result if model.live.missed().is_empty() && model.live.doubt().is_none() => {
-            &["<again>: plan again.", "<home>: home."]
+            &["<again>: new run.", "<home>: home."]
         }
-        Screen::Result => &["<again>: plan again.", "<rescan>: re-scan.", "<home>: home."],
+        Screen::Result => &["<again>: new run.", "<rescan>: re-scan.", "<home>: home."],
         Screen::Home => &["<result>: result."],
         _ => &["<result>: result.", "<home>: home."],
     };

@@ -10,7 +10,7 @@ mod state;
 
 use super::look::{Look, fill};
 use super::{map, text};
-use crate::layout;
+use crate::layout::{self, PlanRows};
 use crate::model::{Pane, ui::Arrangement};
 use crate::theme::Role;
 use ratatui::Frame;
@@ -24,7 +24,7 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
         return failure(look, frame, area, why);
     }
     let size = (frame.area().width, frame.area().height);
-    let rows = |width| state::rows(look, width);
+    let rows = |width| PlanRows { state: state::rows(look, width), checks: checks::rows(look, width) };
     for (pane, area) in layout::plan(area, size, look.model.ui.pane, &rows) {
         match pane {
             Pane::Map if arrangement == Arrangement::Paged => map_with_estimate(look, frame, area),
@@ -42,9 +42,15 @@ fn map_with_estimate(look: &Look, frame: &mut Frame, area: Rect) {
     let [map, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(BELOW_MAP)]).areas(area);
     map::draw(look, frame, map);
     let columns = usize::from(below.width).saturating_sub(1);
-    let lines = [state::in_a_line(look, columns), (Role::Text, promise::in_a_line(look, columns))];
-    for ((role, words), row) in lines.into_iter().zip(below.rows()) {
-        frame.render_widget(look.line([(role, format!(" {words}"))]), row);
+    // The checks that need attention are counted beside the state.
+    let counts = checks::in_a_line(look);
+    let room = columns.saturating_sub(counts.as_ref().map_or(0, |(_, words)| text::width(words) + 2));
+    let (role, state) = state::in_a_line(look, room);
+    let mut first = vec![(role, format!(" {}", text::column(&state, room)))];
+    first.extend(counts.map(|(role, words)| (role, format!("  {words}"))));
+    let second = vec![(Role::Text, format!(" {}", promise::in_a_line(look, columns)))];
+    for (parts, row) in [first, second].into_iter().zip(below.rows()) {
+        frame.render_widget(look.line(parts), row);
     }
 }
 

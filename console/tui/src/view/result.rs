@@ -21,6 +21,8 @@ const SIDE: [u16; 3] = [42, 62, 88];
 const LARGE: u16 = 170;
 /// Rows of the list of missed areas, including the frame, on a narrow, a wide and a large screen.
 const MISSED: [u16; 3] = [8, 10, 20];
+/// Rows of that list on a narrow screen, including the frame, if text above it would be cut otherwise: two areas.
+const LEAST_MISSED: u16 = 5;
 /// Rows of the panes above the list of missed areas while the list has the focus.
 const ABOVE_MISSED: u16 = 8;
 /// Minimum rows of a curve, including the frame.
@@ -97,7 +99,10 @@ fn placed(model: &Model, area: Rect, result: &RunResult) -> Vec<(Pane, Rect)> {
             missed::rows_now(model, area.width).clamp(3, MISSED[1])
         }
         // A narrow screen has no room to spare: the reasons have the rows of the list once it has the focus.
-        0 if pane != Pane::Missed => missed::rows_now(model, area.width).clamp(3, MISSED[0]),
+        0 if pane != Pane::Missed => {
+            let most = if is_text_cut(model, area, result) { LEAST_MISSED } else { MISSED[0] };
+            missed::rows_now(model, area.width).clamp(3, most)
+        }
         _ if pane == Pane::Missed => needed.min(area.height.saturating_sub(ABOVE_MISSED)).max(3),
         2 => beside_plates(model, area, result, needed.min(MISSED[2])),
         size => needed.min(MISSED[size]),
@@ -117,6 +122,13 @@ fn placed(model: &Model, area: Rect, result: &RunResult) -> Vec<(Pane, Rect)> {
     let mut panes = vec![(if pane == Pane::Plates { pane } else { Pane::Map }, left), missed];
     panes.extend(side(model, right, (result, size)));
     panes
+}
+
+/// Whether a narrow screen cuts the figures or the shares of the floor if the missed areas take all their rows.
+fn is_text_cut(model: &Model, area: Rect, result: &RunResult) -> bool {
+    let left = area.height.saturating_sub(missed::rows_now(model, area.width).clamp(3, MISSED[0]) + 2);
+    let figures = figures::rows(model, result, SIDE[0] - 2);
+    figures.max(floor::rows(model, result, area.width.saturating_sub(SIDE[0] + 2))) > left
 }
 
 /// Whether the column beside the map is too short for all figures and shares of the floor if the missed areas take this

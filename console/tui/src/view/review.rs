@@ -235,7 +235,7 @@ fn row(run: &PastRun, mark: &str, widths: Widths) -> Parts {
 fn notes(run: &PastRun) -> String {
     let verified = run.verified.as_ref().map(|_| "✓v".to_owned());
     let bookmarks = (run.bookmarks > 0).then(|| format!("●{}", run.bookmarks));
-    let problem = run.note.as_ref().map(|_| "*".to_owned());
+    let problem = run.note.as_ref().map(|_| "! problem".to_owned());
     let all = verified.into_iter().chain(bookmarks).chain(run.remark.clone()).chain(problem);
     all.collect::<Vec<_>>().join(" ")
 }

@@ -38,12 +38,14 @@ pub(super) fn effect(model: &Model, changed: &PlannerChoice, has_progress: bool)
         effect => effect,
     };
     let required_m = model.live.run.about.as_ref().map(|about| about.mission.clearance_m);
-    effect_of(&effect, model.live.waits(), required_m)
+    let active = model.live.run.planner_id().filter(|id| *id != changed.id);
+    let whose = active.map_or_else(|| "now ".to_owned(), |id| format!("{id}: "));
+    effect_of(&effect, model.live.waits(), (required_m, &whose))
 }
 
 /// The estimated effect, as sentences; before the start, the effect on the plan. `required_m` is the clearance that the
-/// scenario requires, metres.
-fn effect_of(effect: &Effect, is_plan: bool, required_m: Option<f64>) -> Vec<String> {
+/// scenario requires, metres; `whose` is put before the figures without the change.
+fn effect_of(effect: &Effect, is_plan: bool, (required_m, whose): (Option<f64>, &str)) -> Vec<String> {
     let basis = if is_plan { NEW_PLAN } else { "Forecast from here" };
     match effect {
         Effect::Computing(share) => {
@@ -54,25 +56,29 @@ fn effect_of(effect: &Effect, is_plan: bool, required_m: Option<f64>) -> Vec<Str
         }
         Effect::Unknown(why) => vec![format!("Effect not known: {why}.")],
         Effect::Known { now, then, remark } => {
-            let clearance = clearance(now.as_ref(), then, required_m);
-            let mut first = remark.iter().cloned().chain(loss(now.as_ref(), then)).chain([clearance]);
+            let now = now.as_ref().map(|now| (whose, now));
+            let clearance = clearance(now, then, required_m);
+            let mut first = remark.iter().cloned().chain(loss(now, then)).chain([clearance]);
             let most = format!("{basis}: {}.", first.next().unwrap_or_default());
-            let rest = first.chain(figures(now.as_ref(), then));
+            let rest = first.chain(figures(now, then));
             std::iter::once(most).chain(rest.map(|words| format!("{}.", text::capitalized(&words)))).collect()
         }
     }
 }
 
-/// A figure with the change, and the present one beside it.
-fn beside(now: Option<&Figures>, then: &Figures, figure: &dyn Fn(&Figures) -> String) -> String {
+/// The figures without the change, and the text before them.
+type Now<'a> = Option<(&'a str, &'a Figures)>;
+
+/// A figure with the change, and the one without it.
+fn beside(now: Now, then: &Figures, figure: &dyn Fn(&Figures) -> String) -> String {
     match now {
-        Some(now) => format!("{} (now {})", figure(then), figure(now)),
+        Some((whose, now)) => format!("{} ({whose}{})", figure(then), figure(now)),
         None => figure(then),
     }
 }
 
 /// The clearance, with a warning if it is below the required one.
-fn clearance(now: Option<&Figures>, then: &Figures, required_m: Option<f64>) -> String {
+fn clearance(now: Now, then: &Figures, required_m: Option<f64>) -> String {
     let metres = |figures: &Figures| {
         figures.clearance_m.map_or_else(|| "unknown".into(), |m| format!("{} m", text::number(m, 2)))
     };
@@ -86,14 +92,14 @@ fn clearance(now: Option<&Figures>, then: &Figures, required_m: Option<f64>) -> 
 }
 
 /// The floor that the change loses: what it scans, and what is scanned without it; `None` if it scans no less.
-fn loss(now: Option<&Figures>, then: &Figures) -> Option<String> {
-    let [now, then] = [now?.scanned?, then.scanned?].map(text::percent);
+fn loss(now: Now, then: &Figures) -> Option<String> {
+    let [now, then] = [now?.1.scanned?, then.scanned?].map(text::percent);
     let is_less = now.parse::<f64>().ok()? > then.parse::<f64>().ok()?;
     is_less.then(|| format!("scans LESS, {then} % of the reachable floor instead of {now} %"))
 }
 
 /// The other figures, most important first. The tether's are named only if the change affects them.
-fn figures(now: Option<&Figures>, then: &Figures) -> Vec<String> {
+fn figures(now: Now, then: &Figures) -> Vec<String> {
     let beside = |figure: &dyn Fn(&Figures) -> String| beside(now, then, figure);
     let or_dash = |words: Option<String>| words.unwrap_or_else(|| "-".into());
     let tether = |figures: &Figures| or_dash(figures.tether_m.map(|m| format!("{} m", text::number(m, 1))));
@@ -101,7 +107,7 @@ fn figures(now: Option<&Figures>, then: &Figures) -> Vec<String> {
         or_dash(figures.wrap_rad.map(|wrap_rad| format!("{}°", text::number(wrap_rad.to_degrees(), 0))))
     };
     let changed = |name: &str, figure: &dyn Fn(&Figures) -> String| {
-        let is_changed = now.is_none_or(|now| figure(now) != figure(then));
+        let is_changed = now.is_none_or(|(_, now)| figure(now) != figure(then));
         is_changed.then(|| format!("{name} {}", beside(figure)))
     };
     let time = beside(&|figures| clock(figures.time_s));

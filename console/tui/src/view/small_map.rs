@@ -48,6 +48,12 @@ impl<'a> SmallMap<'a> {
         about.map_or(0.0, |about| about.mission.swath_m)
     }
 
+    /// The number of missed areas that are numbered on the map.
+    fn n_missed(&self) -> usize {
+        let is_number = |text: &str| text.chars().all(|letter| letter.is_ascii_digit());
+        self.marks.iter().filter(|(.., text)| is_number(text)).count()
+    }
+
     /// The columns that the tank fills in a number of rows, with a margin for its legend.
     pub(super) fn columns(&self, rows: u16) -> u16 {
         let (low, high) = self.world.boundary.bounds();
@@ -77,7 +83,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, map: &SmallMap) {
     let settled = map::with_legend(area, |floor, _| {
         let window = window(map.world, floor)?;
         let shades = map.floor.and_then(|floor| map::shades_of_run(look, floor, window));
-        let legend = map::floor_legend(look, shades.clone(), !map.trail.is_empty(), columns);
+        let marks = (!map.trail.is_empty(), map.n_missed());
+        let legend = map::floor_legend(look, shades.clone(), marks, columns);
         let rows = (legend.len() as u16).min(area.height / ROWS_PER_LINE);
         Some(((window, shades, legend), rows))
     });

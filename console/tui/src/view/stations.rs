@@ -1,7 +1,7 @@
 //! The stations pane of a large screen: the measurement of each AE station, and whether it was used.
 
 use super::look::{Look, Parts, fill, marked};
-use super::{position, text};
+use super::{position, table, text};
 use crate::model::Pane;
 use crate::model::history::HISTORY_S;
 use crate::theme::Role;
@@ -32,16 +32,20 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let head = vec![(Role::Dim, format!(" {}", laid_out(TABLE.map(|(head, ..)| head.to_owned()), columns)))];
     let has_history = usize::from(block.inner(area).height) > 2 * stations.len();
     let none = stations.is_empty().then(|| vec![(Role::Dim, " No AE stations.".to_owned())]);
-    let rows = stations.iter().flat_map(|station| {
-        let history = has_history.then(|| history(look, station.id, columns));
-        std::iter::once(row(look, station, columns)).chain(history)
+    let selected = look.model.ui.station.min(stations.len().saturating_sub(1));
+    let is_focused = look.model.ui.focus() == Pane::Stations;
+    let rows = stations.iter().enumerate().flat_map(|(index, station)| {
+        let history = has_history.then(|| look.line(history(look, station.id, columns)));
+        let row = row(look, station, columns);
+        let line = if is_focused && index == selected {
+            table::row(look, unmarked(row), true, columns)
+        } else {
+            look.line(row)
+        };
+        std::iter::once(line).chain(history)
     });
-    fill(
-        frame,
-        area,
-        block,
-        std::iter::once(head).chain(none).chain(rows).map(|parts| look.line(parts)).collect(),
-    );
+    let head = std::iter::once(head).chain(none).map(|parts| look.line(parts));
+    fill(frame, area, block, head.chain(rows).collect());
 }
 
 fn row(look: &Look, station: &Station, columns: usize) -> Parts {
@@ -66,6 +70,12 @@ fn row(look: &Look, station: &Station, columns: usize) -> Parts {
     ];
     let (role, words) = marked(position::old_figures(look).is_some(), (role, laid_out(cells, columns)));
     vec![(role, if words.starts_with('◌') { words } else { format!(" {words}") })]
+}
+
+/// A row without its first column, in which the mark of the selection stands.
+fn unmarked(row: Parts) -> Parts {
+    let rest = |words: String| words.chars().skip(1).collect::<String>();
+    row.into_iter().map(|(role, words)| (role, rest(words))).collect()
 }
 
 /// A length in metres, at most seven columns wide in any tank.

@@ -6,7 +6,7 @@ use mission::{Injection, Order, ParamValue, RangeFault, Severity, ZoneCost};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use tui::model::ui::{Ask, MapLayer};
-use tui::model::{Overlay, Palette, PastRun, Screen as Name, home::Found};
+use tui::model::{Overlay, Palette, Pane, PastRun, Screen as Name, home::Found};
 use tui::update::{Choice, choices};
 use tui::{Effect, Job, Key, Msg, Query, RunId, RunMsg, Source, Speed, ThemeName};
 use world::{Point, StationId};
@@ -211,8 +211,8 @@ fn a_wrong_value_is_underlined_with_what_would_be_right() {
             screen.press([Key::Enter]);
         }
         assert_eq!((effects, fault(&screen)), (vec![], Some((at.into(), what.into()))), "{line}");
-        screen.press([Key::Backspace]);
-        assert_eq!(fault(&screen), None, "it is typed on");
+        screen.press([Key::Ctrl('u')]);
+        assert_eq!(fault(&screen), None, "a new line is begun");
     }
     let mut screen = Screen::held();
     screen.type_text(":speed 900");
@@ -292,6 +292,92 @@ fn a_station_is_excluded_and_taken_back() {
         let mut screen = state();
         assert_eq!(run(&mut screen, "exclude S4"), order(false));
         assert_eq!(run(&mut screen, "include S4"), order(true));
+    }
+}
+
+#[test]
+fn a_wrong_value_is_explained_while_it_is_typed_and_a_value_that_may_become_right_is_not() {
+    let mut screen = with_home(Screen::held());
+    let mut typed = |line: &str| {
+        screen.press([Key::Esc, Key::Char(':')]);
+        screen.type_text(line);
+        fault(&screen).map(|(word, _)| word)
+    };
+    let wrong = [
+        ("speed 99", "99"),
+        ("planner xyz", "xyz"),
+        ("no-go 1,1 x", "x"),
+        ("no-go a 2,2", "a"),
+        ("inject S2 offset=x", "offset=x"),
+        ("inject S9 dead 20s", "S9"),
+        ("goto nowhere", "nowhere"),
+        ("theme dork ", "dork"),
+    ];
+    for (line, word) in wrong {
+        assert_eq!(typed(line).as_deref(), Some(word), "{line}");
+    }
+    let may_be_right = [
+        "speed",
+        "speed ",
+        "speed 0",
+        "speed 0.",
+        "speed 1",
+        "speed m",
+        "no-go ",
+        "no-go -",
+        "no-go 1",
+        "no-go 1,",
+        "no-go 1,1",
+        "no-go 1,1 2,",
+        "inject S2 off",
+        "inject S2 offset=",
+        "inject S2 offset=2.5",
+        "inject S2 dead 2",
+        "open cov",
+        "verify 2026",
+        "theme d",
+        "filter \"position",
+        "seek 0:",
+        "spede 9",
+    ];
+    for line in may_be_right {
+        assert_eq!(typed(line), None, "{line}");
+    }
+    // The values that are missing are named below the line.
+    screen.press([Key::Esc, Key::Char(':')]);
+    screen.type_text("no-go 1,1");
+    for size in [(60, 16), (80, 24), (120, 36), (200, 60)] {
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        let shown = text(&drawn(&screen.model, RICH, size));
+        assert!(shown.contains("no-go CORNER OPPOSITE."), "{size:?}\n{shown}");
+    }
+    assert_eq!(screen.press([Key::Enter]), [], "Enter does nothing until the line is whole");
+    assert!(fault(&screen).is_some_and(|(_, what)| what == "usage: no-go CORNER OPPOSITE"));
+}
+
+#[test]
+fn enter_in_the_pane_of_the_stations_offers_the_command_for_the_selected_station() {
+    let order = |used| vec![Effect::Order(Order::UseStation { station: StationId(2), used, by: None })];
+    for size in [(60, 16), (80, 24), (120, 36), (200, 60)] {
+        let mut screen = Screen::held();
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        screen.press([Key::Char('3')]);
+        for _ in 0..8 {
+            if screen.model.ui.pane != Pane::Stations {
+                screen.press([Key::Tab]);
+            }
+        }
+        screen.press([Key::Down]);
+        let shown = text(&drawn(&screen.model, RICH, size));
+        assert!(shown.contains(">S2 ") && shown.contains("Enter exclude"), "{size:?}\n{shown}");
+        assert_eq!(screen.press([Key::Enter]), [], "the first Enter gives no order");
+        let Overlay::Commands(palette) = &screen.model.ui.overlay else { panic!("the line is open") };
+        assert_eq!(palette.line.text(), "exclude S2");
+        assert_eq!(screen.press([Key::Enter]), order(false), "{size:?}");
+        let fix = screen.model.live.run.position.fix.as_mut().expect("a fix");
+        fix.excluded = vec![(StationId(2), positioning::Exclusion::ByOrder)];
+        screen.press([Key::Enter]);
+        assert_eq!(screen.press([Key::Enter]), order(true), "{size:?}");
     }
 }
 

@@ -68,6 +68,26 @@ fn a_drive_back_is_no_progress_along_the_plan_although_it_crosses_its_lanes() {
     assert!((after.covered_reachable - 0.5).abs() < 1e-12, "floor may be scanned on the way");
 }
 
+#[test]
+fn a_clearance_below_the_required_one_is_named_in_the_list_and_in_the_question() {
+    let mut screen = ending();
+    let required_m = screen.model.live.run.about.as_ref().expect("a run").mission.clearance_m;
+    let said = format!("BELOW the required {required_m:.2} m");
+    for (clearance_m, is_below) in
+        [(required_m - 0.02, true), (required_m, false), (required_m - 0.001, false)]
+    {
+        screen.hear(RunMsg::WayBack(Ok(WayBack { clearance_m, ..way() })));
+        for size in [(60, 16), (80, 24), (120, 36)] {
+            let shown = shown(&screen, size).split_whitespace().collect::<Vec<_>>().join(" ");
+            assert_eq!(
+                shown.contains(&said) || shown.contains("BELOW the"),
+                is_below,
+                "{clearance_m} {size:?}\n{shown}"
+            );
+        }
+    }
+}
+
 fn shown(screen: &Screen, size: (u16, u16)) -> String {
     text(&drawn(&screen.model, RICH, size))
 }

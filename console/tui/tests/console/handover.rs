@@ -73,7 +73,7 @@ fn status_tells_state_alarms_and_the_open_question_with_commands() {
     let lines = plain::status(&screen.model);
     assert!(lines[0].starts_with("HELD by operator. `resume`: resume."), "{lines:#?}");
     assert!(lines[1].starts_with("tank-07, planner rpf, T+00:16:07, speed ×1."), "{lines:#?}");
-    assert!(lines.iter().any(|line| line.starts_with("WATCH: new obstacle")), "{lines:#?}");
+    assert!(lines.iter().any(|line| line.starts_with("WATCH: obstacle at ")), "{lines:#?}");
     assert!(
         lines.last().unwrap().starts_with("Resume? The robot will move. `yes`: resume, `no`: cancel."),
         "{lines:#?}"
@@ -92,6 +92,20 @@ fn a_mission_without_alarms_says_so() {
     assert!(matches!(event.kind, EventKind::Ended { .. }));
     ended.hear(RunMsg::Events(vec![event]));
     assert!(page(&ended.model).contains("ended by operator"));
+}
+
+#[test]
+fn the_next_steps_of_a_held_robot_are_all_its_ways_on() {
+    let page = page(&held().model);
+    let next = page.split("\n## ").find(|part| part.starts_with("Next steps")).unwrap_or_default();
+    for way in [
+        "- Resume the task (`resume`)",
+        "- Drive back and end there (`return`)",
+        "- End the mission here (`end`)",
+    ] {
+        assert!(next.contains(way), "{way}\n{next}");
+    }
+    assert!(!next.contains("`resume`: resume."), "{next}");
 }
 
 #[test]

@@ -7,9 +7,9 @@ use crate::screens::{drawn, text};
 use crate::sizes;
 use account::{Estimate, Fold, Summary, estimate::Worst};
 use mission::{AskId, EventKind, Order, Outcome, Outlook, Severity, WorkerId};
-use tui::model::home::{Attention, Found};
+use tui::model::home::{Attention, Found, HomeList};
 use tui::model::{Combination, Continued, Forecast, GhostPlan, PastRun, ScenarioEntry};
-use tui::{Effect, Msg, RunMsg, RunResult, Source};
+use tui::{Effect, Key, Msg, RunMsg, RunResult, Source};
 use world::Point;
 
 fn store(name: &str, screen: &mut Screen) {
@@ -79,8 +79,12 @@ pub(crate) fn found() -> Found {
         scenario("goto-single-obstacle", "goto", "apf"),
     ];
     scenarios.extend((1..=8).map(|n| scenario(&format!("shift-{n}"), "cover", "hull-partition")));
-    let point =
-        |severity, kind: &str, text: &str| Attention { severity, kind: kind.into(), text: text.into() };
+    let point = |severity, kind: &str, text: &str| Attention {
+        severity,
+        kind: kind.into(),
+        text: text.into(),
+        run: None,
+    };
     let mut runs = vec![
         PastRun {
             verified: Some("2026-11-22 04:21".into()),
@@ -141,10 +145,51 @@ fn home() {
     screen.send(Msg::Glimpsed(key, Ok(Box::new(known))));
     sizes::store("home", &mut screen, |_| false);
     screen.type_text("jj");
-    let refused = screen.press([tui::Key::Enter]);
+    let refused = screen.press([Key::Enter]);
     assert_eq!(refused, []);
     let said = screen.model.notice().map(|notice| notice.text.clone()).unwrap_or_default();
     assert!(said.starts_with("depot cannot be opened: line 14: unknown key"), "{said}");
+}
+
+#[test]
+fn attention_can_be_read_whole_and_acts_on_its_run() {
+    let mut screen = Screen::idle();
+    let mut found = found();
+    let long = "run corridor: re-scan the rest (:rescan); ".to_owned()
+        + &"killed while it was being written; ".repeat(8);
+    found.attention[0].text = long.clone() + "the end of the text";
+    found.attention[0].run = Some("20261122T040049Z-corridor".into());
+    screen.send(Msg::Found(Box::new(found)));
+    for size in [(60, 16), (80, 24), (120, 36), (200, 60)] {
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        screen.press([Key::Char('1')]);
+        screen.model.home.list = HomeList::Attention;
+        screen.model.home.is_read = true;
+        let shown = text(&drawn(&screen.model, RICH, size));
+        assert!(shown.contains("the end of the text"), "{size:?}\n{shown}");
+        assert!(shown.contains("r: re-scan the rest."), "{size:?}\n{shown}");
+    }
+    let rescan = screen.press([Key::Char('r')]);
+    let runs = Source::Rescan(vec!["20261122T040049Z-corridor".into()]);
+    assert!(matches!(&rescan[..], [Effect::Open { source, .. }] if *source == runs), "{rescan:?}");
+}
+
+#[test]
+fn a_filter_at_home_finds_words_and_ends_and_is_visible() {
+    let mut screen = Screen::idle();
+    screen.send(Msg::Found(Box::new(found())));
+    screen.press([Key::Char('1')]);
+    screen.model.home.list = HomeList::Runs;
+    screen.model.home.filter = "corridor CRASHED".into();
+    let names: Vec<&str> = screen.model.home.runs().iter().map(|run| run.scenario.as_str()).collect();
+    assert_eq!(names, ["corridor"]);
+    screen.model.home.filter = "nothing such".into();
+    for size in [(60, 16), (80, 24), (120, 36), (200, 60)] {
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        let shown = text(&drawn(&screen.model, RICH, size));
+        assert!(shown.contains("`nothing such`"), "{size:?}\n{shown}");
+        assert!(!shown.contains("Enter replays"), "{size:?}\n{shown}");
+    }
 }
 
 #[test]
@@ -158,7 +203,7 @@ fn past_runs_at_home() {
         |screen: &Screen| tui::update::offered(&screen.model, tui::actions::ActionId::Verify).is_ok();
     assert!(!offered(&screen), "no run is selected while the scenarios have the focus");
     screen.send(Msg::Resize { width: 120, height: 36 });
-    let asked = screen.press([tui::Key::Tab]);
+    let asked = screen.press([Key::Tab]);
     let key = ("20261122T040049Z-cover-circle".to_owned(), "complete".to_owned());
     assert_eq!(asked, [Effect::Glimpse(key.clone())]);
     assert!(offered(&screen));
@@ -181,12 +226,12 @@ fn attention_is_read_in_full() {
     let mut screen = Screen::idle();
     screen.send(Msg::Found(Box::new(found())));
     screen.type_text("1");
-    screen.press([tui::Key::BackTab, tui::Key::Down, tui::Key::Enter]);
+    screen.press([Key::BackTab, Key::Down, Key::Enter]);
     sizes::store("home_attention", &mut screen, |_| false);
     screen.send(Msg::Resize { width: 80, height: 24 });
     let shown = text(&drawn(&screen.model, RICH, (80, 24)));
     assert!(shown.contains("help: did you mean `radius_m`?"), "{shown}");
-    screen.press([tui::Key::Esc]);
+    screen.press([Key::Esc]);
     let shown = text(&drawn(&screen.model, RICH, (80, 24)));
     assert!(!shown.contains("help: did you mean"), "{shown}");
 }
@@ -214,7 +259,7 @@ fn plan() {
     screen.hear(RunMsg::Events(vec![chosen, planned]));
     screen.hear(RunMsg::Estimated(Some(ask), Box::new(estimate(462.8))));
     screen.type_text("2c");
-    screen.press([tui::Key::Enter]);
+    screen.press([Key::Enter]);
     let path = vec![Point::new(9.4, 0.0), Point::new(0.0, 0.0)];
     let ghost = GhostPlan { path, lanes: Vec::new(), estimate: estimate(391.2), certified: None };
     screen.hear(RunMsg::Compared(choice("spiral-tangent"), Ok(Box::new(ghost))));
@@ -250,7 +295,7 @@ fn result() {
     let pages =
         ["7 Result: Coverage", "7 Result: Missed:", "7 Result: Plates", "7 Result: Map", "7 Result  "];
     for page in pages {
-        screen.press([tui::Key::Tab]);
+        screen.press([Key::Tab]);
         let shown = text(&drawn(&screen.model, RICH, (60, 16)));
         assert!(
             shown.contains(&format!("┌─▸ {page}")) || shown.contains(&format!("┌─ {page}")),
@@ -465,7 +510,7 @@ fn forecasts_are_also_said_in_sentences() {
 fn what_if() {
     let mut screen = forecast();
     screen.type_text("+");
-    screen.press([tui::Key::Enter]);
+    screen.press([Key::Enter]);
     screen.hear(RunMsg::ForecastAt(choice("spiral-tangent"), 0.42));
     sizes::store("what_if", &mut screen, |_| false);
     // In 7-bit characters, the arrow keys must not look like the keys for the speed.
@@ -479,23 +524,20 @@ fn what_if() {
 fn a_forecast_is_chosen_with_a_question_and_what_was_compared_is_written_down() {
     let mut screen = forecast();
     screen.type_text("+");
-    let added = screen.press([tui::Key::Enter]);
+    let added = screen.press([Key::Enter]);
     assert_eq!(added, [Effect::Forecast(vec![choice("spiral-tangent")])]);
-    assert_eq!(screen.press([tui::Key::Enter]), [], "it is not finished");
+    assert_eq!(screen.press([Key::Enter]), [], "it is not finished");
     let Some(Ok(mut made)) = screen.model.live.what_if.as_ref().unwrap().candidates[0].made.clone() else {
         panic!()
     };
     made.outlook.choice = choice("spiral-tangent");
     screen.hear(RunMsg::Forecast(choice("spiral-tangent"), Ok(Box::new(made))));
-    let effects = screen.press([tui::Key::Enter]);
+    let effects = screen.press([Key::Enter]);
     assert!(
         matches!(&effects[..], [Effect::Order(Order::NoteOutlooks(noted))] if noted.len() == 2),
         "{effects:?}"
     );
-    assert_eq!(
-        screen.press([tui::Key::Enter]),
-        [Effect::Order(Order::ChoosePlanner(choice("spiral-tangent")))]
-    );
+    assert_eq!(screen.press([Key::Enter]), [Effect::Order(Order::ChoosePlanner(choice("spiral-tangent")))]);
 }
 
 #[test]

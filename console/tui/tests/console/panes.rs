@@ -7,7 +7,8 @@ use mission::event::{MeasuredPull, TetherAlarm};
 use mission::{Event, EventKind, HoldReason, Order, Outcome, Resumes, Severity};
 use positioning::{FixError, Integrity};
 use ratatui::style::Style;
-use tui::{Msg, Redraw, RunMsg, redraw};
+use tui::model::Pane;
+use tui::{Key, Msg, Redraw, RunMsg, redraw};
 
 const SIZES: [(u16, u16); 5] = [(80, 24), (100, 30), (120, 36), (160, 45), (200, 60)];
 
@@ -44,6 +45,43 @@ fn states() -> Vec<(&'static str, Screen)> {
         ("alarm", integrity(Integrity::Alarm)),
         ("result", result()),
     ]
+}
+
+#[test]
+fn one_pane_or_chart_can_fill_the_screen_at_every_size() {
+    for size in [(60, 16), (80, 24), (120, 36), (200, 60)] {
+        let mut screen = Screen::tethered();
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        screen.press([Key::Char('3'), Key::Char('F')]);
+        let mut titles = Vec::new();
+        for _ in 0..12 {
+            let shown = text(&drawn(&screen.model, RICH, size));
+            let frame = shown.lines().find(|line| line.contains('▸')).unwrap_or_default().to_owned();
+            assert!(frame.starts_with('┌') && frame.ends_with('┐'), "{size:?}\n{shown}");
+            assert_eq!(shown.matches('┌').count(), 1, "{size:?}: one pane\n{shown}");
+            titles.push(frame);
+            screen.press([Key::Tab]);
+        }
+        for title in [
+            "Map",
+            "Tether out, m",
+            "Largest wrap, °",
+            "95 % error, m",
+            "Scanned, % of reachable",
+            "Stations",
+        ] {
+            assert!(titles.iter().any(|frame| frame.contains(title)), "{size:?}: {title}: {titles:#?}");
+        }
+        screen.model.ui.pane = Pane::Chart(tui::model::ui::Chart::Error);
+        let before = screen.model.ui.span_s;
+        screen.press([Key::Char('z')]);
+        assert!(screen.model.ui.span_s < before);
+        screen.press([Key::Char('Z')]);
+        assert_eq!((screen.model.ui.span_s, screen.model.ui.map.zoom), (before, 0));
+        screen.press([Key::Char('F')]);
+        let shown = text(&drawn(&screen.model, RICH, size));
+        assert!(shown.matches('┌').count() > 1 || size.0 < 80, "{size:?}: all panes\n{shown}");
+    }
 }
 
 /// The result of a scan on a tether, with an area that was missed.
@@ -291,14 +329,14 @@ fn on_a_large_terminal_each_pane_has_a_key_that_its_title_shows() {
     screen.send(Msg::Resize { width: 120, height: 36 });
     let shown = text(&drawn(&screen.model, RICH, (120, 36)));
     assert!(shown.contains("▸ F2 Map") && shown.contains("─ F3 Events"), "{shown}");
-    screen.press([tui::Key::F(3)]);
+    screen.press([Key::F(3)]);
     let shown = text(&drawn(&screen.model, RICH, (120, 36)));
     assert!(shown.contains("▸ F3 Events") && shown.contains("─ F2 Map"), "{shown}");
-    screen.press([tui::Key::F(4)]);
+    screen.press([Key::F(4)]);
     assert!(text(&drawn(&screen.model, RICH, (120, 36))).contains("▸ F4 Stations"));
     // On a smaller terminal, Tab is the way, and the key says so.
     screen.send(Msg::Resize { width: 80, height: 24 });
-    screen.press([tui::Key::F(2)]);
+    screen.press([Key::F(2)]);
     let said = screen.model.notice().map(|notice| notice.text.clone()).unwrap_or_default();
     assert!(said.contains("Tab: next pane"), "{said}");
     assert!(!text(&drawn(&screen.model, RICH, (80, 24))).contains("F2"));
@@ -472,7 +510,7 @@ fn a_blocked_return_path_is_named_by_the_pane_and_the_alarm_at_every_size() {
         screen.type_text("3");
         let mut shown = text(&drawn(&screen.model, RICH, size));
         for _ in 0..6 {
-            screen.press([tui::Key::Tab]);
+            screen.press([Key::Tab]);
             shown += &text(&drawn(&screen.model, RICH, size));
         }
         assert!(

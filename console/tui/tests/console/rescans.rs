@@ -78,7 +78,7 @@ fn the_handover_page_of_a_re_scan_names_the_run_before_it_and_both_shares() {
     let line = page.lines().find(|line| line.starts_with("- Scanned: ")).unwrap_or_default();
     let (requested, all) = line.split_once(" % of the requested floor, ").expect(line);
     assert!(requested.rsplit(' ').next().is_some_and(|share| share.parse::<f64>().is_ok()), "{line}");
-    assert_eq!(all, "100.0 % of the reachable floor with the runs before");
+    assert_eq!(all, "100.0 % of the floor requested of all runs");
     let alone = tui::handover::page(&Screen::held().model);
     assert!(!alone.contains("Re-scan of"), "{alone}");
 }

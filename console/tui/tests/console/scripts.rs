@@ -394,7 +394,10 @@ fn a_planner_that_is_rejected_or_late_is_reported() {
     send_event(&mut screen, EventKind::Discarded { ask, plan: None });
     send_event(&mut screen, EventKind::Snapshotted { ask, bytes: 12 });
     assert_eq!(screen.model, before, "of no interest to the operator");
-    for (ticks, text) in [(1, "planner rpf answered 1 tick late"), (4, "planner rpf answered 4 ticks late")] {
+    for (ticks, text) in [
+        (1, "planner rpf was late; the robot waited 1 tick"),
+        (4, "planner rpf was late; the robot waited 4 ticks"),
+    ] {
         send_event(&mut screen, EventKind::PlannerLate { planner: "rpf".into(), ticks });
         assert_eq!(notice(&screen), text);
     }

@@ -1,12 +1,14 @@
 //! A start belongs to the plan that is shown.
 
 use crate::fixture::{PLAIN, Screen, choice, tether};
+use crate::maps::beside_map;
 use crate::screens::{drawn, text};
 use crate::sizes::SIZES;
-use mission::{CheckOutcome, EventKind, Order, ParamValue};
+use mission::{CheckOutcome, EventKind, Order, ParamValue, TaskConfig};
 use tui::{
     Effect, Key, Model, Msg, RunId, RunMsg, Source, Speed, actions::ActionId, model::Overlay, update::offered,
 };
+use world::{Point, Vector};
 
 fn hear(screen: &mut Screen, kind: EventKind) {
     let event = screen.mission.now(kind);
@@ -162,6 +164,31 @@ fn a_start_that_is_blocked_is_neither_offered_nor_asked_for() {
     assert!(!shown.contains("S start"), "{shown}");
     assert_eq!(screen.press([Key::Char('S'), Key::Enter]), []);
     assert_eq!(screen.model.ui.overlay, Overlay::None);
+}
+
+#[test]
+fn every_check_that_needs_attention_is_named_on_the_plan_screen() {
+    let mut screen = certified();
+    let about = screen.model.live.run.about.as_mut().expect("a run");
+    about.checklist = vec!["Hatch guarded".into(), "Gas test done".into()];
+    about.mission.position_limit_m = 0.001;
+    // The run before left the robot somewhere else.
+    let regions = Vec::new();
+    about.mission.task = TaskConfig::Cover { anchor: Point::origin(), regions, tolerance_m: 0.2 };
+    screen.model.live.left_at = Some(about.mission.start.position + Vector::new(9.0, 0.0));
+    for (width, height) in [(80, 24), (120, 36), (200, 60)] {
+        screen.send(Msg::Resize { width, height });
+        screen.press([Key::Char('2')]);
+        let shown = text(&drawn(&screen.model, PLAIN, (width, height)));
+        let flat = beside_map(&screen, (width, height));
+        assert!(flat.contains("TICK Hatch guarded, Gas test done: not"), "{width}x{height}\n{shown}");
+        assert!(shown.contains("2 to tick"), "{width}x{height}\n{shown}");
+        assert!(shown.contains("WARN") && shown.contains("robot"), "{width}x{height}\n{shown}");
+        assert!(!shown.contains("more: not ticked"), "{width}x{height}\n{shown}");
+    }
+    screen.send(Msg::Resize { width: 60, height: 16 });
+    let shown = text(&drawn(&screen.model, PLAIN, (60, 16)));
+    assert!(shown.contains("2 to tick, ") && shown.contains("WARN: A"), "{shown}");
 }
 
 #[test]

@@ -91,9 +91,11 @@ impl Reasons<'_> {
     fn too_much_pull(&self, certificate: &Certificate) -> Vec<String> {
         let (Some(pull), Some(limits)) = (certificate.pull, self.case.pull) else { return Vec::new() };
         let weak_reel = || {
+            let [needed, reel] = beside_limit(pull.needed_n, pull.reel_n, 1);
             format!(
-                "reeling in needs {}: use a stronger reel, a lighter tether, another anchor or another planner",
-                pull.text()
+                "reeling in needs {needed} N at {}, the reel pulls {reel} N: use a stronger reel, a lighter tether, another \
+                 anchor or another planner",
+                place(pull.at)
             )
         };
         let weak_robot = |limit_n: f64| {

@@ -33,7 +33,7 @@ pub(super) fn of_planner(kind: &EventKind) -> Option<LogLine> {
             line(Severity::Warn, "plan", format!("planner {planner} will not take over: {why}"))
         }
         EventKind::PlannerLate { planner, ticks } => {
-            line(Severity::Watch, "plan", format!("{}; the robot stood still", late_text(planner, *ticks)))
+            line(Severity::Watch, "plan", late_text(planner, *ticks))
         }
         EventKind::PlannerFailed { fault, .. } => line(fault.severity(), "plan", fault.message.clone()),
         _ => return None,
@@ -98,7 +98,7 @@ pub(super) fn of_shadow(kind: &EventKind) -> Option<LogLine> {
 
 /// How late a planner answered, as a phrase without a full stop.
 pub fn late_text(planner: &str, ticks: u64) -> String {
-    format!("planner {planner} answered {} late", ticks_text(ticks))
+    format!("planner {planner} was late; the robot waited {}", ticks_text(ticks))
 }
 
 fn ticks_text(ticks: u64) -> String {

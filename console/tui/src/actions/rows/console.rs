@@ -18,6 +18,8 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::Messages, "messages", "Show the latest messages", &[], &[Context::Screen]).does(|m| open(m, Overlay::Messages { selected: 0 })),
     action(ActionId::NextPane, "next-pane", "Go to the next pane", &[Key::Tab], &[Context::Screen]).label("pane").repeats().when(offer::other_pane).looks(|m| act::turn_to(m, 1)),
     action(ActionId::PreviousPane, "previous-pane", "Go to the previous pane", &[Key::BackTab], &[Context::Screen]).repeats().when(offer::other_pane).looks(|m| act::turn_to(m, -1)),
+    action(ActionId::FullPane, "full-pane", "Show one pane alone, or all panes", &[Key::Char('F')], &[On(Screen::Mission), Context::Replay])
+        .when(|m| offer::on_screen(m, Screen::Mission)).looks(act::show_alone),
     action(ActionId::Pane(1), "first-pane", "Go to the first pane", &[Key::F(2)], &[Context::Screen]).when(|m| offer::pane(m, 1)).looks(|m| act::turn_to_number(m, 1)),
     action(ActionId::Pane(2), "second-pane", "Go to the second pane", &[Key::F(3)], &[Context::Screen]).when(|m| offer::pane(m, 2)).looks(|m| act::turn_to_number(m, 2)),
     action(ActionId::Pane(3), "third-pane", "Go to the third pane", &[Key::F(4)], &[Context::Screen]).when(|m| offer::pane(m, 3)).looks(|m| act::turn_to_number(m, 3)),

@@ -5,7 +5,7 @@ use crate::actions::argument::{may, must};
 use crate::actions::context::Context::{self, On};
 use crate::actions::{ActionId, Kind};
 use crate::keys::Key;
-use crate::model::ui::{MAX_ZOOM, MapView};
+use crate::model::ui::MapView;
 use crate::model::{Overlay, Pane, Screen};
 use crate::update::offer::demand;
 use crate::update::overlay::open;
@@ -16,9 +16,9 @@ use world::Vector;
 #[rustfmt::skip]
 pub(super) const ROWS: &[Action] = &[
     action(ActionId::ZoomIn, "zoom-in", "Zoom in", &[Key::Char('z')], &[Context::Map]).repeats()
-        .when(|m| map::is_shown(m).and(demand(m.ui.map.zoom < MAX_ZOOM, "already at maximum zoom"))).looks(|m| map::zoom(m, 1)),
+        .when(|m| map::can_zoom(m, true)).looks(|m| map::zoom_shown(m, true)),
     action(ActionId::ZoomOut, "zoom-out", "Zoom out", &[Key::Char('Z')], &[Context::Map]).repeats()
-        .when(|m| map::is_shown(m).and(demand(m.ui.map.zoom > 0, "the whole tank is already shown"))).looks(|m| map::zoom(m, -1)),
+        .when(|m| map::can_zoom(m, false)).looks(|m| map::zoom_shown(m, false)),
     action(ActionId::WholeTank, "whole-tank", "Show the whole tank", &[Key::Char('0')], &[Context::Map]).when(map::is_shown).looks(|m| m.ui.map = MapView::default()),
     action(ActionId::Follow, "follow", "Keep the map centred on the robot", &[Key::Char('f')], &[Context::Map])
         .when(|m| map::is_shown(m).and(demand(m.live.run.position.pose.is_some(), "no position estimate yet"))).looks(|m| m.ui.map.follow = !m.ui.map.follow),

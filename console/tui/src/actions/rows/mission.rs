@@ -62,7 +62,7 @@ pub(super) const ROWS: &[Action] = &[
         .when(|m| demand(m.live.waits(), "plans can only be compared before the start").and(offer::has_plan(m)).and(offer::has_planners(m))).does(|m| act::choose(m, Purpose::Compare)),
     action(ActionId::Preflight, "check-again", "Check again", &[Key::Char('r')], &[Context::Preflight]).label("check again").reaches(Reach::Mission)
         .when(|m| demand(m.live.waits(), "checks can only be run before the start")).does(preflight::open),
-    action(ActionId::PlanAgain, "plan-again", "Replan", &[], &[On(Screen::Plan)]).reaches(Reach::Mission)
+    action(ActionId::PlanAgain, "plan-again", "Make the plan of this mission once more", &[], &[On(Screen::Plan)]).reaches(Reach::Mission)
         .when(|m| demand(m.live.waits(), "no mission is waiting to start").and(offer::has_plan(m))).does(|_| vec![Effect::Order(Order::Plan)]),
     action(ActionId::CancelPlan, "cancel-plan", "Cancel planning or comparison", &[Key::Esc], &[On(Screen::Plan)]).label("cancel").reaches(Reach::Mission).when(offer::cancel_plan).does(overlay::cancel_plan),
 ];

@@ -16,7 +16,7 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::NextMissed, "next-missed", "Show the next missed area", &[Key::Char('n')], &[On(Screen::Result)]).label("missed").repeats().when(offer::missed).looks(|m| go::select_missed(m, 1)),
     action(ActionId::PreviousMissed, "previous-missed", "Show the previous missed area", &[Key::Char('N')], &[On(Screen::Result)]).label("missed").repeats()
         .when(offer::missed).looks(|m| go::select_missed(m, -1)),
-    action(ActionId::Again, "again", "Plan the same scenario again", &[Key::Char('p')], &[On(Screen::Result)]).label("plan again").reaches(Reach::Mission)
+    action(ActionId::Again, "again", "Open the same scenario for a new run", &[Key::Char('p')], &[On(Screen::Result)]).label("new run").reaches(Reach::Mission)
         .when(|m| demand(m.live.source.is_some() && !m.live.is_under_way(), "a mission is in progress")).does(go::again),
     action(ActionId::Play, "play", "Play or pause the run (<hold>)", &[], &[Context::Replay]).when(replay::is_loaded).does(replay::toggle),
     action(ActionId::Jump(Jump::TickBack), "tick-back", "Step back one tick", &[Key::Char(',')], &[Context::Replay]).label("tick").repeats().when(replay::is_loaded),

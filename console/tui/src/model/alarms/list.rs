@@ -131,6 +131,13 @@ impl Alarms {
         self.list[index].take(severity, text, t_s);
     }
 
+    /// Changes the text of an alarm; its state stays as it is.
+    pub fn reword(&mut self, cause: &Cause, text: impl FnOnce(&str) -> String) {
+        if let Some(alarm) = self.list.iter_mut().find(|alarm| alarm.cause == *cause) {
+            alarm.text = text(&alarm.text);
+        }
+    }
+
     /// The index of the alarm of a cause. If the list is full, a new alarm replaces one that cleared long ago.
     fn place_of(&mut self, cause: Cause) -> Option<usize> {
         if let Some(index) = self.list.iter().position(|alarm| alarm.cause == cause) {

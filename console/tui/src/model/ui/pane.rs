@@ -77,6 +77,18 @@ impl Pane {
     /// for a survey and for a mission with a tether.
     const BESIDE_MAP: [Self; 5] = [Self::Map, Self::Events, Self::Stations, Self::Tether, Self::Coverage];
     const OF_SURVEY: [Self; 4] = [Self::Map, Self::Events, Self::Stations, Self::Coverage];
+    /// The panes of the mission screen that are shown alone on the whole screen, in Tab order: with and without a tether.
+    #[rustfmt::skip]
+    const ALONE: [Self; 12] = [
+        Self::Map, Self::Coverage, Self::Position, Self::Tether, Self::Planner, Self::Stations, Self::Events,
+        Self::Chart(Chart::Error), Self::Chart(Chart::Residual), Self::Chart(Chart::TetherOut), Self::Chart(Chart::Wrap),
+        Self::Chart(Chart::Scanned),
+    ];
+    #[rustfmt::skip]
+    const ALONE_WITHOUT_TETHER: [Self; 9] = [
+        Self::Map, Self::Coverage, Self::Position, Self::Planner, Self::Stations, Self::Events,
+        Self::Chart(Chart::Error), Self::Chart(Chart::Residual), Self::Chart(Chart::Scanned),
+    ];
     /// The panes of a screen with a list, in Tab order. A small terminal shows one at a time.
     pub const OF_LIST: [Self; 2] = [Self::List, Self::Detail];
     /// The panes of the result screen on a wide terminal, in Tab order: the plates take the place of the map.
@@ -99,6 +111,11 @@ pub enum Chart {
 }
 
 impl MissionParts {
+    /// The panes of the mission screen through which Tab cycles while one of them is shown alone.
+    pub(super) fn alone(self) -> &'static [Pane] {
+        if self.tether { &Pane::ALONE } else { &Pane::ALONE_WITHOUT_TETHER }
+    }
+
     /// The panes of the mission screen through which Tab cycles beside the map; `is_narrow` if some of them take the place of
     /// others.
     pub(super) fn beside_map(self, is_narrow: bool) -> &'static [Pane] {

@@ -16,11 +16,20 @@ const MOST: usize = 6;
 
 /// The log lines up to the last event of an alarm, newest first: what led to the alarm.
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
+    list(look, frame, area, "Events before it", before(look, alarm));
+}
+
+fn before<'a>(look: &Look<'a>, alarm: &Alarm) -> impl Iterator<Item = &'a Entry> {
     let (log, last) = (&look.run.log, alarm.events.back().copied());
     let numbers = last.map_or(0..0, |last| log.oldest()..last);
     let shown = numbers.rev().filter_map(|number| log.get(number));
-    let shown = shown.filter(|entry| entry.severity >= Severity::Info);
-    list(look, frame, area, "Events before it", shown);
+    shown.filter(|entry| entry.severity >= Severity::Info)
+}
+
+/// The rows, including the frame, in which the lines before an alarm are shown whole; at most those of the area.
+pub(super) fn rows(look: &Look, area: Rect, alarm: &Alarm) -> u16 {
+    let size = (usize::from(area.width.saturating_sub(2)), usize::from(area.height.saturating_sub(2)));
+    events::in_rows(before(look, alarm), size).len().max(1) as u16 + 2
 }
 
 /// The last log lines of WATCH and above, newest first.

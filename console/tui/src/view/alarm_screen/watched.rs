@@ -80,6 +80,15 @@ pub(super) fn curves_in_a_row(look: &Look, frame: &mut Frame, area: Rect) {
     }
 }
 
+/// The curves beside each other, as many as fit.
+pub(super) fn curves_alone(look: &Look, frame: &mut Frame, area: Rect) {
+    let shown: Vec<Chart> = figures_charted(look).take(usize::from(area.width / CURVE_COLUMNS)).collect();
+    let columns = Layout::horizontal(vec![Constraint::Fill(1); shown.len()]).split(area);
+    for (chart, area) in shown.iter().zip(columns.iter()).filter(|(_, area)| area.height > 0) {
+        charts::draw(look, frame, *area, *chart);
+    }
+}
+
 /// The curves of the figures with their limits, and the robot in the tank.
 pub(super) fn curves(look: &Look, frame: &mut Frame, area: Rect) {
     let shown: Vec<Chart> =

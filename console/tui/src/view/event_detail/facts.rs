@@ -37,7 +37,7 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::Separable => "bias separable again",
         EventKind::RangesInconsistent { .. } => "ranges contradict each other",
         EventKind::RangesConsistent => "ranges agree again",
-        EventKind::ObstacleFound { .. } => "new obstacle",
+        EventKind::ObstacleFound { .. } => "obstacle found",
         EventKind::PlannerChosen { .. } => "planner active",
         EventKind::PlannerPrepared { .. } => "planner prepared",
         EventKind::PlannerRejected { .. } => "planner rejected",

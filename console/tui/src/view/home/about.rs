@@ -1,7 +1,7 @@
 //! Describes the selected line of the home screen, beside the lists of a wide screen.
 
 use super::{attention, runs, scenarios, setup};
-use crate::model::home::{Found, HomeList};
+use crate::model::home::HomeList;
 use crate::model::{PastRun, ScenarioEntry};
 use crate::theme::Role;
 use crate::view::fields::{self, Field};
@@ -20,7 +20,7 @@ const TIMED: usize = 50;
 /// The number of past runs listed about a scenario.
 const RUNS: usize = 6;
 
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, found: &Found) {
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let home = &look.model.home;
     let nothing = || vec![look.line([(Role::Dim, " Nothing is selected.".into())])];
     match home.list {
@@ -34,7 +34,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, found: &Found) {
         },
         HomeList::Attention => {
             let columns = usize::from(area.width).saturating_sub(2);
-            let (title, lines) = match attention::selected(look, found) {
+            let (title, lines) = match home.selected_attention() {
                 Some(point) => {
                     let lines = attention::whole(point, columns).into_iter().map(|parts| look.line(parts));
                     (point.kind.clone(), lines.collect())

@@ -19,7 +19,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, (found, about): (
     let is_focused = home.list == HomeList::Attention;
     let room = usize::from(area.width).saturating_sub(2);
     let open = found.attention.iter().filter(|point| point.severity > Severity::Info).count();
-    let selected = selected(look, found).filter(|_| is_read(look, about));
+    let selected = look.model.home.selected_attention().filter(|_| is_read(look, about));
     let title = if open > 0 { "Attention" } else { "Checks" };
     let pane = Pane {
         border: border(look, HomeList::Attention),
@@ -37,21 +37,15 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, (found, about): (
     pane.draw(look, frame, area);
 }
 
-/// The selected item.
-pub(super) fn selected<'a>(look: &Look, found: &'a Found) -> Option<&'a Attention> {
-    let last = found.attention.len().checked_sub(1)?;
-    found.attention.get(look.model.home.attention.min(last))
-}
-
 /// Whether the whole text of the selected item is shown below the list.
 fn is_read(look: &Look, about: bool) -> bool {
     about && look.model.home.is_read && look.model.home.list == HomeList::Attention
 }
 
 /// The rows that the whole text of the selected item needs, with its title.
-pub(super) fn text_rows(look: &Look, found: &Found, width: u16, about: bool) -> u16 {
+pub(super) fn text_rows(look: &Look, width: u16, about: bool) -> u16 {
     let room = usize::from(width).saturating_sub(2);
-    let selected = selected(look, found).filter(|_| is_read(look, about));
+    let selected = look.model.home.selected_attention().filter(|_| is_read(look, about));
     selected.map_or(0, |point| whole(point, room).len() as u16 + 1)
 }
 

@@ -8,7 +8,7 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-/// Rows of the text about the selected row, without its title.
+/// Rows of the text about a selected scenario or run, without its title.
 pub(super) const ABOUT: u16 = 2;
 /// The minimum rows of a pane at which it has a text about the selected row.
 pub(super) const LEAST: u16 = 8;
@@ -34,9 +34,11 @@ impl Pane<'_> {
     pub(super) fn draw(self, look: &Look, frame: &mut Frame, area: Rect) {
         let about = self.about.filter(|(_, lines)| area.height >= LEAST && !lines.is_empty());
         let below = about.as_ref().map_or(0, |(_, lines)| lines.len() as u16 + 1);
-        let below = below.min(area.height.saturating_sub(LEAST - ABOUT - 1));
         let inner = look.block(self.border, "", "").inner(area);
         let heads = u16::from(self.heads.is_some());
+        // The list keeps two rows, if it has them.
+        let kept = heads + self.rows.len().clamp(1, 2) as u16;
+        let below = below.min(inner.height.saturating_sub(kept));
         let (columns, height) =
             (usize::from(inner.width), usize::from(inner.height.saturating_sub(heads + below)));
         let shown = table::window(self.selected.unwrap_or(0), self.rows.len(), height);
@@ -61,7 +63,17 @@ impl Pane<'_> {
             let y = inner.bottom().saturating_sub(below);
             divide(look, frame, Rect { y, height: 1, ..area }, (self.border, &title));
             let place = Rect { y: y + 1, height: below.saturating_sub(1), ..inner };
-            let lines = lines.into_iter().map(|parts| look.line(parts)).collect();
+            let is_cut = lines.len() > usize::from(place.height);
+            let mut lines: Vec<Line> = lines.into_iter().map(|parts| look.line(parts)).collect();
+            if let Some(last) = usize::from(place.height).checked_sub(1).filter(|_| is_cut) {
+                lines.truncate(last);
+                lines.push(
+                    look.line(
+                        [(Role::Dim, " … (a larger terminal shows the rest)")]
+                            .map(|(role, words)| (role, words.to_owned())),
+                    ),
+                );
+            }
             fill(frame, place, ratatui::widgets::Block::new(), lines);
         }
     }

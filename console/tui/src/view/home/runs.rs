@@ -66,7 +66,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, about: bool) {
     let pane = Pane {
         border: border(look, HomeList::Runs),
         title: "Past runs, UTC",
-        note: if is_focused && !verified_too.is_empty() {
+        note: if is_focused && !verified_too.is_empty() && home.filter.is_empty() {
             verified_too.into()
         } else {
             note(look, HomeList::Runs)

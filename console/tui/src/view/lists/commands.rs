@@ -1,7 +1,7 @@
 //! The command line and its list; if opened as help, the list shows every key.
 
 use super::list::{List, hint, paragraph};
-use crate::actions::{Action, ActionId, keymap::Keymap};
+use crate::actions::{Action, ActionId, find, keymap::Keymap};
 use crate::model::Palette;
 use crate::theme::Role;
 use crate::update::{Choice, Group, choices, group, offered, values};
@@ -29,7 +29,7 @@ pub(super) fn list(look: &Look, palette: &Palette, columns: u16) -> List {
         let needed = why.len() + legend.len();
         (why.into_iter().chain(legend).chain(rules(&look.model.console.keys, room)).collect(), needed)
     } else {
-        (below(look, found.get(palette.selected), room), 0)
+        (below(look, palette, found.get(palette.selected), room), 0)
     };
     let (above, cursor) = line(palette, found.len(), (is_whole, room));
     List {
@@ -157,11 +157,14 @@ fn why_not(look: &Look, selected: Option<&Choice>, room: usize) -> Option<Row> {
 }
 
 /// The usage of the selected command, and hints about keys, as far as they fit.
-fn below(look: &Look, selected: Option<&Choice>, room: usize) -> Vec<Row> {
+fn below(look: &Look, palette: &Palette, selected: Option<&Choice>, room: usize) -> Vec<Row> {
+    // While values are typed, the usage names those that are missing.
+    let typed = palette.line.text().trim_start();
     let usage = match selected {
-        Some(Choice::Command(action)) if !action.args.is_empty() => Some(format!("{}.", action.usage())),
-        _ => None,
+        Some(Choice::Command(action)) => Some(*action),
+        _ => typed.split_once(' ').and_then(|(name, _)| find::named(name)),
     };
+    let usage = usage.filter(|action| !action.args.is_empty()).map(|action| format!("{}.", action.usage()));
     let refused = why_not(look, selected, room);
     let values = match selected {
         Some(Choice::Command(action)) => values(look.model, action),

@@ -8,24 +8,25 @@ use crate::view::{confirm, coverage, text};
 
 /// Width of the names, columns.
 const NAME: usize = 18;
+/// The width of the list from which an entry may have more than one line, columns.
+const WRAPS: u16 = 60;
 
 pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
     let room = usize::from(columns).saturating_sub(3);
     let scanned = coverage::Bases::shown(look).sentence();
     let can = can_drive_back(look.model);
     let (role, way) = match (&look.model.live.way_back, &can) {
-        (Some(Ok(way)), Ok(())) => (Role::Text, confirm::finish_way(way)),
+        (Some(Ok(way)), Ok(())) => (Role::Text, confirm::finish_way(look.model, way)),
         (None, _) => (Role::Dim, "looking for a way back...".into()),
         (_, Err(why)) | (Some(Err(why)), Ok(())) => (Role::Dim, why.clone()),
     };
     let name = |name: &str| text::column(name, NAME.min(room));
     let entry = |title: &str, role: Role, words: &str| -> Vec<Row> {
         let room = room.saturating_sub(NAME);
-        // While the first entry is selected, only this line gives the reason for a missing way back: it is shown whole.
-        let lines = match role {
-            Role::Dim if text::width(words) > room => text::wrap(words, room),
-            _ => vec![text::fit(words, room)],
-        };
+        // A warning is shown whole; a narrower screen has few rows and shows it below the list only.
+        let has_rows = columns >= WRAPS || role == Role::Dim;
+        let wraps = text::width(words) > room && has_rows;
+        let lines = if wraps { text::wrap(words, room) } else { vec![text::fit(words, room)] };
         let front = |line| if line == 0 { name(title) } else { name("") };
         let lines = lines.into_iter().enumerate();
         lines.map(|(line, words)| vec![(Role::Title, front(line)), (role, words)]).collect()

@@ -34,7 +34,10 @@ impl List {
         let room = usize::from(inner.height).saturating_sub(self.above.len());
         // The selected line takes precedence over anything below the list, and most of a list over the last lines
         // there.
-        let spare = room.saturating_sub(self.rows.len()).max(room / 4).min(room.saturating_sub(3));
+        let spare = room
+            .saturating_sub(self.rows.len())
+            .max(room / 4)
+            .min(room.saturating_sub(self.rows.len().min(3)));
         let below = self.below.len().min(spare.max(self.needed_below));
         let below = below.min(room.saturating_sub(self.rows.len().min(1)));
         let chosen = self.selected..self.selected + self.selected_rows.max(1);

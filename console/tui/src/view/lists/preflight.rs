@@ -26,7 +26,11 @@ pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
     let chosen = checks.get(selected).filter(|(check, item)| {
         item.is_some() || matches!(check.outcome, CheckOutcome::Passed | CheckOutcome::Ticked)
     });
-    let chosen = chosen.map(|(check, _)| format!("{}: {}", check.what, check.found));
+    let ticked = |check: &Check| format!("{}: ticked {}", check.what, check.found).trim_end().to_owned();
+    let chosen = chosen.map(|(check, _)| match check.outcome {
+        CheckOutcome::Ticked => ticked(check),
+        _ => format!("{}: {}", check.what, check.found),
+    });
     let mut below: Vec<Row> = chosen.iter().flat_map(|words| paragraph(Role::Dim, words, room)).collect();
     let verdict = match (model.live.preflight.is_checking, blocks.sentence()) {
         (true, _) => (Role::Watch, " Checking...".to_owned()),
@@ -45,8 +49,8 @@ pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
     let parts = [
         (blocks.failed, "FAIL"),
         (warned, "WARN"),
-        (model.n_by_hand(), "by hand"),
-        (count(CheckOutcome::Passed), "ok"),
+        (blocks.not_ticked, "to tick"),
+        (count(CheckOutcome::Passed) + model.n_by_hand() - blocks.not_ticked, "ok"),
     ];
     let parts: Vec<String> =
         parts.iter().filter(|(n, _)| *n > 0).map(|(n, word)| format!("{n} {word}")).collect();

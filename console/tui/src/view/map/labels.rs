@@ -113,7 +113,7 @@ impl Board<'_, '_> {
         let look = self.look;
         let columns = survey::shown(&look).map_or(&[][..], |survey| survey.columns.as_slice());
         for (column, number) in columns.iter().zip(look.run.column_numbers()) {
-            self.if_free(column.center, Role::Found, &number.to_string(), 0);
+            self.near(column.center, Role::Found, &number.to_string(), 1);
         }
         let obstacles = look.run.about.iter().flat_map(|about| &about.world.obstacles);
         for obstacle in obstacles.filter(|obstacle| !survey::is_mapped(&look, obstacle)) {
@@ -172,10 +172,18 @@ impl Board<'_, '_> {
     }
 
     fn missed(&mut self) {
-        for (index, area) in numbered(&self.look).iter().enumerate() {
-            let is_selected = index == self.look.model.ui.missed;
-            let role = if is_selected { Role::Selected } else { missed::role(area) };
-            self.always(area.at, role, &(index + 1).to_string());
+        let selected = self.look.model.ui.missed;
+        let mut areas: Vec<(usize, &Area<MissReason>)> =
+            numbered(&self.look).into_iter().enumerate().collect();
+        // The selected area keeps its place.
+        areas.sort_by_key(|(index, _)| *index != selected);
+        for (index, area) in areas {
+            let role = if index == selected { Role::Selected } else { missed::role(area) };
+            let number = (index + 1).to_string();
+            // Two numbers side by side would read as one.
+            if !self.near(area.at, role, &number, 1) {
+                self.always(area.at, role, &number);
+            }
         }
     }
 
@@ -272,7 +280,12 @@ impl Board<'_, '_> {
 
     /// Writes a label at a point or, if something is there, next to it.
     fn beside(&mut self, at: Point, role: Role, label: &str) {
-        let Some((column, row)) = self.window.cell_of(at) else { return };
+        self.near(at, role, label, 0);
+    }
+
+    /// Writes a label at a point or next to it, where `margin` columns on both sides are free; returns whether it was written.
+    fn near(&mut self, at: Point, role: Role, label: &str, margin: u16) -> bool {
+        let Some((column, row)) = self.window.cell_of(at) else { return false };
         let left = column.checked_sub(text::width(label) as u16);
         let places = [
             Some((column, row)),
@@ -281,9 +294,8 @@ impl Board<'_, '_> {
             row.checked_sub(1).map(|above| (column, above)),
             Some((column, row + 1)),
         ];
-        if let Some(cell) = places.into_iter().flatten().find(|cell| self.is_free(*cell, label, 0)) {
-            self.write(cell, role, label);
-        }
+        let free = places.into_iter().flatten().find(|cell| self.is_free(*cell, label, margin));
+        free.inspect(|cell| self.write(*cell, role, label)).is_some()
     }
 
     fn is_free(&self, (column, row): (u16, u16), label: &str, margin: u16) -> bool {

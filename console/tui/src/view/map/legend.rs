@@ -6,6 +6,7 @@ mod marks;
 use super::ink;
 use super::shade::{self, Shade, Shades};
 use super::shapes::Window;
+use crate::model::Screen;
 use crate::theme::Role;
 use crate::view::look::{Look, Parts};
 use crate::view::text;
@@ -134,17 +135,23 @@ pub(super) fn in_lines(look: &Look, window: Window, columns: usize) -> Vec<Parts
     lines(&entries(look, window), columns).into_iter().map(line_parts).collect()
 }
 
-/// The legend of a small map, in lines of a given width: the shades of its floor, and the trail if it is drawn.
+/// The legend of a small map, in lines of a given width: the shades of its floor, the trail if it is drawn, and the
+/// numbers of missed areas.
 pub(in crate::view) fn of_floor(
     look: &Look,
     shades: Option<Shades>,
-    has_trail: bool,
+    (has_trail, n_missed): (bool, usize),
     columns: usize,
 ) -> Vec<Parts> {
     let floor =
         shades.into_iter().flat_map(shade::occurring).map(|(shade, word)| of_shade(shade, word.into()));
     let trail = has_trail.then(|| lines::entry(look, ink::TRAIL, "trail"));
-    let entries: Vec<Entry> = floor.chain(trail).collect();
+    let numbers = (n_missed > 0).then(|| Entry {
+        role: Role::Missed,
+        mark: if n_missed == 1 { "1".into() } else { format!("1-{n_missed}") },
+        word: "missed area".into(),
+    });
+    let entries: Vec<Entry> = floor.chain(trail).chain(numbers).collect();
     lines(&entries, columns).into_iter().map(line_parts).collect()
 }
 
@@ -189,6 +196,10 @@ pub(super) fn draw_lines(look: &Look, frame: &mut Frame, area: Rect, left_over: 
 pub(super) fn entries(look: &Look, window: Window) -> Vec<Entry> {
     let floor = shade::shown(look, window).map(|entry| of_shade(entry.0, shade::word(look, entry)));
     let lines = lines::shown(look, window).into_iter();
+    // Before a re-scan, the floor that it is to scan is the blank one.
+    let is_before = shade::shown(look, window).any(|(shade, _)| shade == Shade::Before);
+    let blank = Entry { role: Role::Dim, mark: String::new(), word: "blank: requested".into() };
+    let floor = floor.chain((is_before && look.model.ui.screen == Screen::Plan).then_some(blank));
     let marks = marks::places(look, window)
         .into_iter()
         .chain(marks::shown(look, window))

@@ -123,7 +123,7 @@ fn reason(reason: MissReason, causes: &[Cause<MissReason>]) -> [String; 3] {
         MissReason::NoLaneBeside => return along(measure),
         MissReason::Wrap => ["a lane here would wind the tether", "would wind the tether", "tether"],
         MissReason::BeyondReel => ["beyond the reach of the tether", "beyond the tether", "beyond tether"],
-        MissReason::Narrow => ["outside the outermost lane", "outside the outermost lane", "outer lane"],
+        MissReason::Narrow => ["outside the outermost lane", "outside the lanes", "outside lanes"],
         reason => [reason.plainly(), reason.briefly(), reason.briefly()],
     };
     words.map(str::to_owned)
@@ -147,8 +147,8 @@ fn beside_lanes(measure: Option<&Measure>) -> [String; 3] {
     };
     let wide_m = text::number(measure.value_m, 2);
     if measure.limit_m.is_some_and(|lane_m| measure.value_m < lane_m / 2.0) {
-        let gap = format!("{wide_m} m beside a lane");
-        return [format!("{gap}, too narrow for its own"), gap, "beside a lane".into()];
+        let gap = format!("{wide_m} m outside the lane");
+        return [format!("{gap}, too narrow for its own"), gap, "outside the lane".into()];
     }
     let far = format!("no lane within {wide_m} m");
     [format!("the planner puts {far}"), far, "no lane".into()]
@@ -182,7 +182,7 @@ mod tests {
     #[test]
     fn floor_without_a_lane_says_whether_it_is_too_narrow_for_one() {
         let measure = |value_m| Measure { value_m, to_m: None, limit_m: Some(0.5), near: None };
-        assert_eq!(beside_lanes(Some(&measure(0.08)))[1], "0.08 m beside a lane");
+        assert_eq!(beside_lanes(Some(&measure(0.08)))[1], "0.08 m outside the lane");
         assert_eq!(beside_lanes(Some(&measure(2.3)))[0], "the planner puts no lane within 2.30 m");
         assert_eq!(beside_lanes(None)[2], "no lane");
     }

@@ -25,7 +25,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let columns = usize::from(look.pane(Pane::Promise, "", "").inner(area).width);
     let widths = Widths::new(columns, second.as_ref());
     let note = if widths.limit > 0 { "limit" } else { "" };
-    let title = title(look, columns.saturating_sub(note.len() + 10));
+    let title = title(look, columns.saturating_sub(note.len() + 5));
     let block = look.pane(Pane::Promise, &title, note);
     let Some(mission) = look.run.about.as_ref().map(|about| &about.mission) else {
         return fill(frame, area, block, Vec::new());

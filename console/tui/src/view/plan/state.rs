@@ -26,10 +26,11 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         return fill(frame, area, block, vec![line]);
     }
     let height = usize::from(block.inner(area).height);
-    let [mut rows, ghost] = [about_plan(look, columns, true), ghost(look, columns)];
-    if rows.len() + ghost.len() > height {
-        rows = about_plan(look, columns, false);
-    }
+    let ghost = ghost(look, columns);
+    let wordings = Wording::ALL.map(|wording| about_plan(look, columns, wording));
+    let fits = wordings.iter().position(|rows| rows.len() + ghost.len() <= height);
+    let [.., shortest] = &wordings;
+    let mut rows = fits.map_or_else(|| shortest.clone(), |fits| wordings[fits].clone());
     let room = usize::from(block.inner(area).height).saturating_sub(rows.len() + ghost.len());
     let why = text::first_lines(reasons(look, columns), room, columns);
     rows.extend(why.into_iter().map(|line| one((Role::Warn, line))));
@@ -40,17 +41,33 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
 /// The rows that the pane needs in a given width, with its frame.
 pub(super) fn rows(look: &Look, width: u16) -> u16 {
     let columns = usize::from(width).saturating_sub(3);
-    let rows = [about_plan(look, columns, true), ghost(look, columns)].concat().len();
+    let rows = [about_plan(look, columns, Wording::Full), ghost(look, columns)].concat().len();
     (rows + reasons(look, columns).len() + 2).min(usize::from(u16::MAX)) as u16
 }
 
-/// How far the plan is made or what it achieves, its certificate and its planner; `is_full` with what a re-scan does not
-/// request.
-fn about_plan(look: &Look, columns: usize, is_full: bool) -> Vec<Parts> {
-    let mut rows = wrapped(progress(look), columns);
-    rows.extend(
-        resumption(look, is_full).into_iter().flat_map(|words| wrapped((Role::Text, words), columns)),
-    );
+/// How much the pane says about the plan.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Wording {
+    /// Everything, with what a re-scan does not request.
+    Full,
+    /// What the plan achieves and where it begins.
+    Short,
+    /// Figures in place of the sentence.
+    Brief,
+}
+
+impl Wording {
+    /// The wordings, from the longest to the shortest.
+    const ALL: [Self; 3] = [Self::Full, Self::Short, Self::Brief];
+}
+
+/// How far the plan is made or what it achieves, where it begins, its certificate and its planner.
+fn about_plan(look: &Look, columns: usize, wording: Wording) -> Vec<Parts> {
+    let (role, whole) = progress(look);
+    let brief = in_figures(look).filter(|_| wording == Wording::Brief);
+    let mut rows = wrapped((role, brief.unwrap_or(whole)), columns);
+    let resumption = resumption(look, wording);
+    rows.extend(resumption.into_iter().flat_map(|words| wrapped((Role::Text, words), columns)));
     rows.extend(certificate(look, columns).map(one));
     if !look.run.is_survey() {
         rows.push(one((Role::Text, text::wording(planner(look), columns))));
@@ -188,6 +205,9 @@ fn ready(look: &Look, is_complete: bool) -> (Role, String) {
                 (true, None, _) => {
                     format!("{state} The plan at the start scans {scanned} % of the requested floor{areas}.")
                 }
+                _ if is_blocked(look) => {
+                    format!("{state} Would scan {scanned} % of the requested floor{areas}.")
+                }
                 _ => format!("{state} Scans {scanned} % of the requested floor{areas}."),
             }
         }
@@ -201,9 +221,13 @@ fn ready(look: &Look, is_complete: bool) -> (Role, String) {
 }
 
 /// Where a plan for a part of the floor begins to scan, beside its mark on the map.
-fn resumption(look: &Look, is_full: bool) -> Option<String> {
+fn resumption(look: &Look, wording: Wording) -> Option<String> {
     let begins = confirm::begins(look.model)?;
-    let of_rescan = is_full && look.model.live.is_rescan();
+    let begins = match wording {
+        Wording::Brief => format!("{}.", begins.split(';').next().unwrap_or_default()),
+        _ => begins,
+    };
+    let of_rescan = wording == Wording::Full && look.model.live.is_rescan();
     let not_requested = " Missed areas that are small or out of reach are not requested.";
     Some(format!("R {begins}{}", if of_rescan { not_requested } else { "" }))
 }

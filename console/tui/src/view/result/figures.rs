@@ -57,7 +57,7 @@ fn lines(model: &Model, result: &RunResult, columns: usize) -> Vec<Parts> {
     let mut lines: Vec<Parts> = doubt.iter().flat_map(|words| wrapped(Role::Warn, words)).collect();
     lines.extend(wrapped(role(result), reason));
     if model.ui.parts.without_scan {
-        lines.extend(wrapped(Role::Text, "Not a scanning mission."));
+        lines.extend(wrapped(Role::Text, super::floor::no_scan(model)));
     }
     lines.extend(torn(result).iter().flat_map(|words| wrapped(Role::Warn, words)));
     lines.extend(requested(model).iter().flat_map(|words| wrapped(Role::Text, words)));

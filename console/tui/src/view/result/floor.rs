@@ -34,10 +34,15 @@ fn lines(model: &Model, result: &RunResult, columns: usize) -> Vec<Parts> {
     bases(model, result, columns).into_iter().chain(notes).collect()
 }
 
+/// Why a mission has no scanned floor, as a sentence.
+pub(super) fn no_scan(model: &Model) -> &'static str {
+    if model.live.run.is_survey() { "A survey: the map is its result." } else { "Not a scanning mission." }
+}
+
 /// The shares of each floor of which shares are stated, as bars.
 fn bases(model: &Model, result: &RunResult, columns: usize) -> Vec<Parts> {
     let Some(account) = &result.summary.floor else {
-        return vec![vec![(Role::Dim, " Not a scanning mission.".into())]];
+        return vec![vec![(Role::Dim, format!(" {}", no_scan(model)))]];
     };
     let at = Columns::of(columns, account.whole.untestable > 0.0);
     let mut rows = vec![vec![(Role::Dim, at.head())]];
@@ -45,7 +50,7 @@ fn bases(model: &Model, result: &RunResult, columns: usize) -> Vec<Parts> {
     rows.push(at.row("whole floor", &account.whole));
     rows.extend(model.live.requested().map(|shares| at.row("requested", shares)));
     if let Some(all) = model.live.together() {
-        rows.push(at.row("all, reach.", &all.floor.reachable));
+        rows.push(at.row("all runs", &all.floor.reachable));
         rows.push(at.row("all, whole", &all.floor.whole));
     }
     let others = others(&account.whole.percent).filter(|_| at.others == [0; 3]);

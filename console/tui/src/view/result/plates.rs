@@ -72,9 +72,13 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let has_focus = look.model.ui.pane == Pane::Plates;
     let floor = look.model.live.floor();
     let Some(floor) = floor.filter(|floor| !floor.plates.is_empty()) else {
-        let why = if floor.is_some() { " The scenario has no plates." } else { " Not a scanning mission." };
+        let why = if floor.is_some() {
+            " The scenario has no plates.".to_owned()
+        } else {
+            format!(" {}", super::floor::no_scan(look.model))
+        };
         let block = look.pane(Pane::Plates, "Plates", &next_page(look));
-        return fill(frame, area, block, vec![look.line([(Role::Dim, why.into())])]);
+        return fill(frame, area, block, vec![look.line([(Role::Dim, why)])]);
     };
     list(look, frame, area, floor, has_focus.then_some(look.model.ui.plate));
 }
