@@ -45,19 +45,22 @@ pub(super) fn map_of_log(args: &MapOfArgs) -> anyhow::Result<()> {
 }
 
 fn human(n_scans: usize, shown: &Shown) -> String {
-    let mut text = format!(
-        "{}, {} % of the rectangle seen, {}, {} on the map; the tracker found {}",
+    let gone = match shown.gone {
+        0 => String::new(),
+        n => format!(" that stayed, and {n} that did not"),
+    };
+    let unusable = match &shown.unusable {
+        (n @ 1.., Some(reason)) => {
+            format!("; {} could not be used, the first because {reason}", counted(*n, "scan"))
+        }
+        _ => String::new(),
+    };
+    format!(
+        "{}, {} % of the rectangle seen, {}, {} on the map; the tracker found {}{gone}{unusable}",
         counted(n_scans, "scan"),
         percent_text(shown.map.explored, 1),
         counted(shown.map.columns.len(), "column"),
         counted(shown.map.others.len(), "other object"),
         counted(shown.found.len(), "obstacle"),
-    );
-    if shown.gone > 0 {
-        text.push_str(&format!(" that stayed, and {} that did not", shown.gone));
-    }
-    if let (n @ 1.., Some(reason)) = &shown.unusable {
-        text.push_str(&format!("; {} could not be used, the first because {reason}", counted(*n, "scan")));
-    }
-    text
+    )
 }

@@ -55,12 +55,19 @@ pub(in crate::engine) struct ScanGuard {
     /// Whether the hull could touch a point, and whether this began in this tick.
     is_late: bool,
     is_late_now: bool,
-    blocked_s: f64,
-    /// Whether the robot goes on by the points with less noise, because single points had stopped it.
-    evens: bool,
+    blocked: Blocked,
     limited: Limited,
     /// The fault of the scans that was reported last.
     pub(super) told_fault: Option<ScanFault>,
+}
+
+/// A robot that the guard keeps from moving.
+#[derive(Debug, Clone, Copy, Default)]
+struct Blocked {
+    /// For how long, seconds.
+    for_s: f64,
+    /// Whether the robot goes on by the points with less noise, because single points had stopped it.
+    evens: bool,
 }
 
 impl ScanGuard {
@@ -121,7 +128,7 @@ impl Known {
         let guard = Guard::new(&state.points, &here, sent).passing_by(state.evened.as_deref());
         let by_all = guard.guarded(momentum, command.drive);
         let is_late = by_all.is_late;
-        let evens = by_all.before.is_some() && (state.evens || state.blocked_s >= NOISE_S);
+        let evens = by_all.before.is_some() && (state.blocked.evens || state.blocked.for_s >= NOISE_S);
         let Guarded { drive, before, .. } = match &state.evened {
             Some(evened) if evens => Guard::new(evened, &here, sent).guarded(momentum, command.drive),
             _ => by_all,
@@ -133,13 +140,14 @@ impl Known {
         let is_late = is_late && touches(reaction_s);
         let is_certain = is_late && touches(0.0);
         let state = &mut self.scan_guard;
-        (state.before, state.evens) = (before, evens);
+        state.before = before;
         state.is_late_now = is_late && !std::mem::replace(&mut state.is_late, is_late);
         // Between two scans, the points are the same with the same noise.
         let is_new = state.age_s == 0.0 || state.late_scans == 0;
         state.late_scans = if is_certain { state.late_scans + u32::from(is_new) } else { 0 };
         let is_blocked = before.is_some() && speed(drive) < BLOCKED_SHARE * speed(command.drive);
-        state.blocked_s = if is_blocked { state.blocked_s + self.config.tick_s } else { 0.0 };
+        let for_s = if is_blocked { state.blocked.for_s + self.config.tick_s } else { 0.0 };
+        state.blocked = Blocked { for_s, evens };
         if before.is_some() { rounded_command(Command { drive, ..command }) } else { command }
     }
 
@@ -171,7 +179,7 @@ impl Known {
         }
         let guard = &self.scan_guard;
         let (gap_m, direction_rad) = guard.before?;
-        if guard.late_scans < LATE_SCANS && guard.blocked_s < BLOCKED_S {
+        if guard.late_scans < LATE_SCANS && guard.blocked.for_s < BLOCKED_S {
             return None;
         }
         let (gap_m, side) = (gap_m.max(0.0), side(direction_rad));
@@ -209,7 +217,7 @@ impl Mission {
         }
         let Some(message) = self.known.guard_stop() else { return false };
         self.known.scan_guard.late_scans = 0;
-        self.known.scan_guard.blocked_s = 0.0;
+        self.known.scan_guard.blocked = Blocked::default();
         self.hold(Hold { by: HoldReason::Guard { message }, resumes: Resumes::Never });
         self.go_on_or_help();
         true
