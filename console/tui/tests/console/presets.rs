@@ -39,10 +39,11 @@ fn a_preset_is_taken_after_a_look_at_what_it_changes() {
     let what = Noted::PresetTaken { preset: "soft".into(), planner: "rpf".into() };
     let note = Effect::Order(Order::Note(Note { what, by: None }));
     let order = Effect::Order(Order::ChoosePlanner(taken));
-    for (mut screen, effects) in [
+    let cases = vec![
         (offered(Screen::held()), vec![note.clone(), order.clone()]),
         (offered(Screen::idle()), vec![note, order, Effect::Order(Order::Plan)]),
-    ] {
+    ];
+    for (mut screen, effects) in cases {
         let estimated = run(&mut screen, "preset-load soft");
         assert!(matches!(&estimated[..], [Effect::Compare(_) | Effect::Forecast(_)]), "{estimated:?}");
         let shown = text(&drawn(&screen.model, RICH, (80, 24)));
