@@ -39,12 +39,11 @@ fn a_preset_is_taken_after_a_look_at_what_it_changes() {
     let what = Noted::PresetTaken { preset: "soft".into(), planner: "rpf".into() };
     let note = Effect::Order(Order::Note(Note { what, by: None }));
     let order = Effect::Order(Order::ChoosePlanner(taken));
-    let states: [(fn() -> Screen, _); 2] = [
-        (Screen::held, vec![note.clone(), order.clone()]),
-        (Screen::idle, vec![note, order, Effect::Order(Order::Plan)]),
+    let cases = vec![
+        (offered(Screen::held()), vec![note.clone(), order.clone()]),
+        (offered(Screen::idle()), vec![note, order, Effect::Order(Order::Plan)]),
     ];
-    for (state, effects) in states {
-        let mut screen = offered(state());
+    for (mut screen, effects) in cases {
         let estimated = run(&mut screen, "preset-load soft");
         assert!(matches!(&estimated[..], [Effect::Compare(_) | Effect::Forecast(_)]), "{estimated:?}");
         let shown = text(&drawn(&screen.model, RICH, (80, 24)));
@@ -172,8 +171,7 @@ fn a_draft_is_forgotten_when_the_robot_moves_again() {
 
 #[test]
 fn a_preset_waits_for_a_hold_even_if_there_is_none_yet() {
-    for change in [std::convert::identity, offered] {
-        let screen = change(Screen::running());
+    for screen in [Screen::running(), offered(Screen::running())] {
         let why = tui::update::offered(&screen.model, tui::actions::ActionId::PresetLoad);
         assert_eq!(why, Err("a preset cannot be loaded while the robot moves; space: HOLD".into()));
     }
