@@ -171,7 +171,8 @@ fn a_draft_is_forgotten_when_the_robot_moves_again() {
 
 #[test]
 fn a_preset_waits_for_a_hold_even_if_there_is_none_yet() {
-    for screen in [Screen::running(), offered(Screen::running())] {
+    let screens: [fn() -> Screen; 2] = [Screen::running, || offered(Screen::running())];
+    for screen in screens.map(|screen| Box::new(screen())) {
         let why = tui::update::offered(&screen.model, tui::actions::ActionId::PresetLoad);
         assert_eq!(why, Err("a preset cannot be loaded while the robot moves; space: HOLD".into()));
     }
