@@ -25,6 +25,8 @@ const UNTIL_TIME: usize = 11;
 /// A scan of a log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoggedScan {
+    /// The line, from 1.
+    pub line: usize,
     /// Time since the first scan, seconds.
     pub t_s: f64,
     /// Pose of the scanner in the frame of the log.
@@ -44,6 +46,7 @@ pub struct ScanLog {
 
 /// A scan as a line states it.
 struct Message {
+    line: usize,
     first_rad: f64,
     step_rad: f64,
     ranges_m: Vec<f64>,
@@ -70,7 +73,7 @@ pub fn read(input: &Input, range_m: f64) -> Result<ScanLog, ImportError> {
             key: Some(key),
             what,
         };
-        messages.push(message.map_err(wrong)?);
+        messages.push(Message { line, ..message.map_err(wrong)? });
     }
     if messages.is_empty() {
         let what =
@@ -83,7 +86,7 @@ pub fn read(input: &Input, range_m: f64) -> Result<ScanLog, ImportError> {
 fn log(messages: Vec<Message>, range_m: f64) -> ScanLog {
     let mut notes = Vec::new();
     let first_s = messages.first().map_or(0.0, |message| message.time_s);
-    let has_times = messages.last().is_some_and(|message| message.time_s > first_s);
+    let has_times = messages.iter().any(|message| message.time_s != first_s);
     if !has_times && messages.len() > 1 {
         notes.push(format!("the log has no times; {STEP_S} s are assumed between two scans"));
     }
@@ -101,7 +104,7 @@ fn log(messages: Vec<Message>, range_m: f64) -> ScanLog {
             ranges_mm: RangesMm(ranges.collect()),
             ..Scan::default()
         };
-        scans.push(LoggedScan { t_s: latest_s, pose: message.pose, scan });
+        scans.push(LoggedScan { line: message.line, t_s: latest_s, pose: message.pose, scan });
     }
     if n_back > 0 {
         notes.push(format!(
@@ -120,6 +123,7 @@ fn front(values: &[&str]) -> Result<Message, Wrong> {
     // An odd number of rays includes both ends of the half turn.
     let n_steps = if n % 2 == 1 { n - 1 } else { n };
     Ok(Message {
+        line: 0,
         first_rad: -FRAC_PI_2,
         step_rad: PI / n_steps.max(1) as f64,
         pose: pose(rest)?,
@@ -134,6 +138,7 @@ fn robot(values: &[&str]) -> Result<Message, Wrong> {
     let n_echoes = count("number of remissions", rest.first())?;
     let rest = rest.get(1 + n_echoes..).unwrap_or_default();
     Ok(Message {
+        line: 0,
         first_rad: number("first angle", values.get(1))?,
         step_rad: number("angle between two rays", values.get(3))?,
         pose: pose(rest)?,
@@ -235,6 +240,7 @@ mod tests {
         };
         assert_eq!(times(&[5.0, 7.0, 6.0, 8.0]), (vec![0.0, 2.0, 2.0, 3.0], 1));
         assert_eq!(times(&[0.0, 0.0, 0.0]), (vec![0.0, 0.2, 0.4], 1));
+        assert_eq!(times(&[2.0, 1.0]), (vec![0.0, 0.0], 1));
     }
 
     proptest! {

@@ -16,6 +16,8 @@ const POSE_SIGMA: (f64, f64) = (0.02, 0.005);
 const REACH_M: f64 = 6.0;
 /// Width of the floor around the outermost echoes, metres.
 const MARGIN_M: f64 = 0.5;
+/// Maximum width of a map, metres; a wider one would have cells larger than a column.
+const MOST_M: f64 = 150.0;
 /// Distance of the wall for the tracker, metres: a log has no drawing, so no echo comes from its wall.
 const FAR_M: f64 = 10_000.0;
 
@@ -28,6 +30,23 @@ pub struct Recorded {
     pub range_m: f64,
     /// Radius of the robot's hull, metres; echoes from inside it are ignored.
     pub hull_m: f64,
+}
+
+/// A log whose scans are too far apart for one map.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error(
+    "line {line}: the pose {x:.1}, {y:.1} m is {away_m:.0} m from the middle of all scans; a map may be at most {MOST_M} m \
+     wide: correct the pose, or split the log"
+)]
+pub struct TooWide {
+    /// The line of the scan that is farthest from the middle of all scans.
+    pub line: usize,
+    /// Its position, metres.
+    pub x: f64,
+    /// The same.
+    pub y: f64,
+    /// Its distance from the middle, metres.
+    pub away_m: f64,
 }
 
 /// An obstacle that the tracker has found.
@@ -59,8 +78,15 @@ pub struct Shown {
 /// Makes the map of a log, and finds its obstacles.
 ///
 /// Cost: proportional to the number of scans; the memory depends only on the size of the floor.
-pub fn shown(log: &ScanLog, recorded: &Recorded) -> Shown {
+///
+/// # Errors
+/// The scans are too far apart for one map.
+pub fn shown(log: &ScanLog, recorded: &Recorded) -> Result<Shown, TooWide> {
     let boundary = around(&log.scans);
+    let (low, high) = boundary.bounds();
+    if (high - low).max() > MOST_M {
+        return Err(farthest(&log.scans));
+    }
     let scanning =
         Scanning { sigma_m: recorded.sigma_m, range_m: Some(recorded.range_m), hull_m: recorded.hull_m };
     let mut exploration = Exploration::new(&boundary, scanning);
@@ -87,7 +113,22 @@ pub fn shown(log: &ScanLog, recorded: &Recorded) -> Shown {
         exploration.add(&logged.scan, &logged.pose, logged.t_s);
     }
     let way = log.scans.iter().map(|logged| logged.pose.position).collect();
-    Shown { boundary, map: exploration.map(), found: found.into_values().collect(), gone, way, unusable }
+    let map = exploration.map();
+    Ok(Shown { boundary, map, found: found.into_values().collect(), gone, way, unusable })
+}
+
+/// The scan that is farthest from the median position of all scans.
+fn farthest(scans: &[LoggedScan]) -> TooWide {
+    let median = |of: fn(&LoggedScan) -> f64| {
+        let mut values: Vec<f64> = scans.iter().map(of).collect();
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).copied().unwrap_or_default()
+    };
+    let middle = Point::new(median(|scan| scan.pose.position.x), median(|scan| scan.pose.position.y));
+    let away = scans.iter().map(|scan| ((scan.pose.position - middle).norm(), scan));
+    let worst = away.max_by(|one, other| one.0.total_cmp(&other.0));
+    let (away_m, line, at) = worst.map_or((0.0, 0, middle), |(m, scan)| (m, scan.line, scan.pose.position));
+    TooWide { line, x: at.x, y: at.y, away_m }
 }
 
 fn view<'a>(
@@ -171,7 +212,7 @@ mod tests {
 
     #[test]
     fn a_column_is_found_and_mapped_and_the_walls_are_no_columns() {
-        let shown = shown(&log(), &RECORDED);
+        let shown = shown(&log(), &RECORDED).unwrap();
         assert_eq!((shown.unusable.0, shown.gone), (0, 0), "{:?}", shown.unusable);
         let [column] = &shown.map.columns[..] else { panic!("{:?}", shown.map.columns) };
         assert!((column.center - Point::new(1.5, 0.0)).norm() < 0.03, "{column:?}");
@@ -181,5 +222,14 @@ mod tests {
         };
         assert_eq!(shown.found.iter().filter(is_column).count(), 1, "{:?}", shown.found);
         assert_eq!(shown.way.len(), 120);
+    }
+
+    #[test]
+    fn a_pose_far_from_all_others_is_named_with_its_line() {
+        let mut log = log();
+        log.scans[40].pose = Pose::new(1e6, 0.0, 0.0);
+        let error = shown(&log, &RECORDED).unwrap_err();
+        assert_eq!(error.line, log.scans[40].line);
+        assert!(error.to_string().starts_with("line 41: the pose 1000000.0, 0.0 m is 999998 m"), "{error}");
     }
 }

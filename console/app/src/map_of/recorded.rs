@@ -14,9 +14,11 @@ use world::coverage::percent_text;
 /// Writes the map of a log of scans, and its picture if one is requested.
 pub(super) fn map_of_log(args: &MapOfArgs) -> anyhow::Result<()> {
     let refused = |what: &str| bad_input(format!("{}: {what}", args.run.display()));
-    let files = [Some(&args.output), args.svg.as_ref()];
-    for file in files.into_iter().flatten() {
-        check_free(file, Some(args.force), &[&args.run])?;
+    let image = args.output.with_extension("pgm");
+    check_free(&args.output, Some(args.force), &[&args.run])?;
+    check_free(&image, Some(args.force), &[&args.run, &args.output])?;
+    if let Some(picture) = &args.svg {
+        check_free(picture, Some(args.force), &[&args.run, &args.output, &image])?;
     }
     let input = Input::read(&args.run).map_err(|error| bad_input(error.to_string()))?;
     if input.kind() != InputKind::Scans {
@@ -24,13 +26,13 @@ pub(super) fn map_of_log(args: &MapOfArgs) -> anyhow::Result<()> {
             "not a log of scans; make a scenario of a drawing or list with `tankops import`",
         ));
     }
-    if args.output.extension().is_some_and(|suffix| suffix == "toml") {
-        let remedy = "a log has no robot and no stations, so it gives no scenario; end the name with .yaml";
+    if !args.output.extension().is_some_and(|suffix| suffix == "yaml" || suffix == "yml") {
+        let remedy = "a log has neither robot nor stations, so it gives only a map; end the name with .yaml";
         return Err(bad_input(format!("{}: {remedy}", args.output.display())));
     }
     let recorded = Recorded { sigma_m: args.sigma, range_m: args.range, hull_m: args.hull };
     let log = scan_log::read(&input, recorded.range_m).map_err(|error| bad_input(error.to_string()))?;
-    let shown = shown(&log, &recorded);
+    let shown = shown(&log, &recorded).map_err(|error| refused(&error.to_string()))?;
     ros_files(args, &shown.map)?;
     if let Some(file) = &args.svg {
         let shapes = shown.found.iter().map(|found| &found.shape);

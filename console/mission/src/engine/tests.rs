@@ -329,8 +329,6 @@ struct Flight {
     age_s: f64,
     /// Discs that only a scanner sees, and whether the scanner works; `None` without a scanner.
     scanner: Option<(Vec<(Point, f64)>, bool)>,
-    /// Standard deviation of a scanned distance, metres.
-    scan_sigma_m: f64,
     /// The inputs of each tick.
     inputs: Vec<(Readings, Vec<Order>)>,
 }
@@ -364,7 +362,6 @@ impl Flight {
             trouble: None,
             age_s: 0.0,
             scanner: None,
-            scan_sigma_m: 0.0,
             inputs: vec![],
         }
     }
@@ -432,9 +429,7 @@ impl Flight {
             let wall_m = known.chart.world().boundary.ray_m(self.pose.position, Vector::new(cos, sin));
             // Only missions that look for obstacles in scans need the wall.
             let wall_m = known.perception.is_some().then_some(wall_m);
-            let hit_m = discs.iter().filter_map(hit).chain(wall_m).min_by(f64::total_cmp);
-            let error_m = self.scan_sigma_m * scatter(known.tick * 360 + u64::from(n));
-            world::Scan::stored(hit_m.map(|hit_m| hit_m + error_m))
+            world::Scan::stored(discs.iter().filter_map(hit).chain(wall_m).min_by(f64::total_cmp))
         };
         Some(world::Scan {
             step_rad,
@@ -868,14 +863,4 @@ fn a_plan_that_has_nothing_to_do_with_the_tank_is_a_fault_of_its_planner() {
         why(1e9).as_deref(),
         Some("planner straight gave a path whose point 1, 1000000000.0, 0.0 m, is far outside the tank")
     );
-}
-
-/// A number that is nearly normally distributed, for the `n`-th reading: the sum of twelve uniform numbers.
-fn scatter(n: u64) -> f64 {
-    let uniform = |k: u64| {
-        let mixed = (12 * n + k).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        ((mixed ^ (mixed >> 32)) >> 11) as f64 / (1_u64 << 53) as f64
-    };
-    (0..12).map(uniform).sum::<f64>() - 6.0
 }

@@ -94,8 +94,9 @@ impl Sent {
 /// The scanned points near a robot, and how it brakes.
 pub(crate) struct Guard<'a> {
     echoes: Vec<Echo>,
-    /// The points with less noise, by which the robot passes beside something; `None` if all points count as they are.
-    evened: Option<Vec<Echo>>,
+    /// The points of the scans before the last one. They count only on the course of the robot: the noise of a single scan
+    /// must not release a robot that stands close to something.
+    earlier: Vec<Echo>,
     here: &'a Here,
     /// The motion before a command that is sent now takes effect, oldest first.
     sent: &'a [Sent],
@@ -105,13 +106,12 @@ impl<'a> Guard<'a> {
     /// Creates the guard for one tick. `sent` is the motion of earlier ticks that the vehicle may still have to carry
     /// out.
     pub(crate) fn new(points: &[Point], here: &'a Here, sent: &'a [Sent]) -> Self {
-        Self { echoes: echoes(points), evened: None, here, sent }
+        Self { echoes: echoes(points), earlier: Vec::new(), here, sent }
     }
 
-    /// The same guard, with points that scatter less. The robot still brakes for every single point on its course, but the
-    /// noise of points beside its course does not stop it.
-    pub(crate) fn passing_by(self, evened: Option<&[Point]>) -> Self {
-        Self { evened: evened.map(echoes), ..self }
+    /// The same guard, with the points of earlier scans in the robot frame now.
+    pub(crate) fn remembering<'p>(self, scans: impl Iterator<Item = &'p [Point]>) -> Self {
+        Self { earlier: scans.flat_map(echoes).collect(), ..self }
     }
 
     /// Limits a command so that the robot can stop in time.
@@ -155,12 +155,13 @@ impl<'a> Guard<'a> {
             }
             hull_m + kept_m(echo.distance_m - hull_m, is_on_course(echo, sector))
         };
-        let Some(evened) = &self.evened else { return self.nearest(&self.echoes, momentum, drive, needed_m) };
-        let on_course = self.nearest(&self.echoes, momentum, drive, |echo, sector| {
-            if echo.is_unresolved() || is_on_course(echo, sector) { needed_m(echo, sector) } else { 0.0 }
-        });
-        let beside = self.nearest(evened, momentum, drive, needed_m);
-        on_course.into_iter().chain(beside).min_by(|one, other| one.0.total_cmp(&other.0))
+        let remembered_m = |echo: &Echo, sector: &Sector| {
+            let counts = !echo.is_unresolved() && is_on_course(echo, sector);
+            if counts { needed_m(echo, sector) } else { 0.0 }
+        };
+        let now = self.nearest(&self.echoes, momentum, drive, needed_m);
+        let before = self.nearest(&self.earlier, momentum, drive, remembered_m);
+        now.into_iter().chain(before).min_by(|one, other| one.0.total_cmp(&other.0))
     }
 
     /// Whether the hull could touch a point although the robot brakes as hard as it can.
@@ -289,6 +290,25 @@ mod tests {
             let motions = self.real.motions(now, &self.here);
             (self.here.pose, self.real) = (motions.end, motions.after);
         }
+    }
+
+    /// A robot before a point that its last scan shows farther away than the scan before: it does not creep on.
+    #[test]
+    fn what_an_earlier_scan_showed_on_the_course_stops_the_robot_too() {
+        let robot = Robot::new(limits(Motion::Unicycle, 0.5), 0);
+        let guard = |earlier: &[Point]| {
+            let scans = std::iter::once(earlier);
+            let far = [Point::new(0.4, 0.0)];
+            let drive = Drive::Twist { v_m_per_s: 0.2, w_rad_per_s: 0.0 };
+            Guard::new(&far, &robot.here, &[]).remembering(scans).guarded(&robot.known, drive)
+        };
+        let speed = |guarded: Guarded| match guarded.drive {
+            Drive::Twist { v_m_per_s, .. } => v_m_per_s,
+            Drive::Velocity(velocity) => velocity.norm(),
+        };
+        assert!(speed(guard(&[])) > 0.1);
+        assert!(speed(guard(&[Point::new(0.21, 0.0)])) < 1e-9, "on the course");
+        assert!(speed(guard(&[Point::new(0.0, 0.205)])) > 0.1, "beside the course");
     }
 
     #[test]

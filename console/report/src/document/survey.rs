@@ -20,7 +20,7 @@ use world::{Obstacle, Point, Shape, coverage::percent_text};
 pub struct MapPart {
     /// Share of the floor within the wall that scans have shown, 0 to 1.
     pub explored: f64,
-    /// The columns, in the order of their numbers on the map.
+    /// The columns, in the order of their numbers.
     pub columns: Vec<ColumnPart>,
     /// Number of outlines of other objects; a long object has several.
     pub objects: usize,
@@ -46,6 +46,8 @@ pub struct NotDrawn {
 /// A column on the map.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ColumnPart {
+    /// Its number, as in the log of the survey.
+    pub number: usize,
     /// Its centre.
     pub center: Point,
     /// Its radius, metres.
@@ -118,6 +120,7 @@ impl MapPart {
         let drawn: Vec<&Obstacle> = run.world.obstacles.iter().filter(|obstacle| obstacle.known).collect();
         let shapes: Vec<Shape> = drawn.iter().map(|obstacle| obstacle.shape.clone()).collect();
         let fates = map.fates(&shapes)?;
+        let numbers = numbers(past);
         let column = |(index, column): (usize, &exploration::Column)| {
             let [center_95_m, radius_95_m] = column.errors_95_m();
             let same = fates.iter().zip(&drawn).find_map(|(fate, obstacle)| match fate {
@@ -129,6 +132,7 @@ impl MapPart {
                 _ => None,
             });
             ColumnPart {
+                number: numbers[index],
                 center: column.center,
                 radius_m: column.radius_m,
                 center_95_m,
@@ -145,9 +149,11 @@ impl MapPart {
             };
             Some(NotFound { name: obstacle.name.clone(), at: obstacle.shape.center(), instead })
         };
+        let mut columns: Vec<ColumnPart> = map.columns.iter().enumerate().map(column).collect();
+        columns.sort_by_key(|column| column.number);
         Some(Self {
             explored: map.explored,
-            columns: map.columns.iter().enumerate().map(column).collect(),
+            columns,
             objects: map.others.len(),
             beyond_tether: past.fold.beyond_tether(),
             drawn: drawn.len(),
@@ -182,6 +188,13 @@ impl MapPart {
     }
 }
 
+/// The numbers of the columns on the map of a run, in the order of the map; empty for a run that made no map.
+fn numbers(past: &PastRun) -> Vec<usize> {
+    let columns = past.fold.map().map_or(&[][..], |map| &map.columns);
+    let found = past.fold.found().map(|solid| (solid.name.as_str(), solid.shape.center()));
+    exploration::column_numbers(columns, found)
+}
+
 /// An object on the map of a survey, for the files of a report.
 pub(super) struct OnMap {
     /// A column with its number on the page, or another object.
@@ -194,7 +207,9 @@ pub(super) struct OnMap {
 /// The objects on the map of a survey; `None` for a run that made no map.
 pub(super) fn on_map(past: &[PastRun]) -> Option<Vec<OnMap>> {
     let map = past.last()?.fold.map()?;
-    let columns = (1..).zip(&map.columns).map(|(number, column): (usize, _)| OnMap {
+    let mut columns: Vec<_> = numbers(past.last()?).into_iter().zip(&map.columns).collect();
+    columns.sort_by_key(|(number, _)| *number);
+    let columns = columns.into_iter().map(|(number, column)| OnMap {
         name: format!("column {number}"),
         shape: column.shape(),
         errors_95_m: Some(column.errors_95_m()),
@@ -233,9 +248,10 @@ pub(super) fn picture(layers: &Layers<'_>, map: &SurveyMap, part: &MapPart) -> O
         let stroke = if is_missing { missed } else { ink };
         sheet.shape(&obstacle.shape, &format!(r#"{dashed} stroke="{stroke}""#));
     }
-    for (number, column) in (1..).zip(&map.columns) {
-        sheet.shape(&column.shape(), &format!(r#"fill="{solid}""#));
-        let at = sheet.at(column.center) + world::Vector::new(column.radius_m * sheet.scale + 0.6, 0.0);
+    for ColumnPart { number, center, radius_m, .. } in &part.columns {
+        let disc = Shape::Disc { center: *center, radius_m: *radius_m };
+        sheet.shape(&disc, &format!(r#"fill="{solid}""#));
+        let at = sheet.at(*center) + world::Vector::new(radius_m * sheet.scale + 0.6, 0.0);
         sheet.draw(format_args!(
             r#"<text class="st" x="{:.2}" y="{:.2}" dy=".35em" font-size="2.6" font-weight="600" fill="{ink}">{number}</text>"#,
             at.x, at.y

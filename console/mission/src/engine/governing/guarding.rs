@@ -1,6 +1,12 @@
 //! The guard by the raw scan: the scanned points, and when the robot is held because of them.
 
-use super::{super::Mission, super::known::Known, scan_fault::ScanFault, speed, state::Limited};
+use super::{
+    super::Mission,
+    super::known::Known,
+    scan_fault::{MAX_AGE_S, ScanFault},
+    speed,
+    state::Limited,
+};
 use crate::{
     config::MissionConfig,
     event::{EventKind, rounded_command},
@@ -10,7 +16,7 @@ use crate::{
 use geometry::{Braking, Drive};
 use perception::Sensor;
 use planner_api::Command;
-use world::{Point, Readings, Scan, scan::carried};
+use world::{Odometry, Point, Readings, Scan, scan::carried};
 
 /// Maximum number of ticks for which the robot has moved since its readings arrived.
 const READING_TICKS: usize = 1;
@@ -22,11 +28,10 @@ const KEPT_M: f64 = 2.0;
 /// The robot is held after this many scans in a row by which the hull could touch a point although the robot brakes
 /// without delay. A single such scan may be noise; the robot brakes at once in any case.
 const LATE_SCANS: u32 = 2;
+/// Number of scans before the last one whose points count on the course.
+const EARLIER_SCANS: usize = 3;
 /// The robot is held if the guard has kept it from moving for this long, seconds.
 const BLOCKED_S: f64 = 2.0;
-/// A robot that single points have kept from moving for this long, seconds, stands still; it goes on by the points with less
-/// noise until all points let it pass.
-const NOISE_S: f64 = 1.0;
 /// Share of the requested speed below which the robot does not move.
 const BLOCKED_SHARE: f64 = 0.1;
 /// The guard is reported after it has limited the robot for this long, seconds.
@@ -37,9 +42,11 @@ const NAMED_AFTER_S: f64 = 0.5;
 pub(in crate::engine) struct ScanGuard {
     /// The points of the last scan, in the robot frame now.
     points: Vec<Point>,
-    /// The same points with less noise, if the noise of the scanner is known: the robot brakes for every single point on
-    /// its course, but noise alone does not hold the robot.
-    evened: Option<Vec<Point>>,
+    /// The points of the scans before, the latest first, in the robot frame now.
+    earlier: Vec<Vec<Point>>,
+    /// The last scan and the motion since then, if the noise of the scanner is known: the robot brakes for every single
+    /// point, but noise alone does not hold the robot.
+    noisy: Option<Noisy>,
     /// Whether a scan has arrived.
     pub(super) has_scan: bool,
     /// Age of the last scan, or of the mission before the first one, seconds.
@@ -55,19 +62,10 @@ pub(in crate::engine) struct ScanGuard {
     /// Whether the hull could touch a point, and whether this began in this tick.
     is_late: bool,
     is_late_now: bool,
-    blocked: Blocked,
+    blocked_s: f64,
     limited: Limited,
     /// The fault of the scans that was reported last.
     pub(super) told_fault: Option<ScanFault>,
-}
-
-/// A robot that the guard keeps from moving.
-#[derive(Debug, Clone, Copy, Default)]
-struct Blocked {
-    /// For how long, seconds.
-    for_s: f64,
-    /// Whether the robot goes on by the points with less noise, because single points had stopped it.
-    evens: bool,
 }
 
 impl ScanGuard {
@@ -82,6 +80,24 @@ impl ScanGuard {
 /// The number of ticks whose motion can follow on readings that were taken `age_s` ago.
 fn ticks(age_s: f64, tick_s: f64) -> usize {
     (age_s / tick_s).ceil() as usize + READING_TICKS
+}
+
+/// A scan from which noise can be removed.
+#[derive(Debug, Clone)]
+struct Noisy {
+    scan: Scan,
+    sigma_m: f64,
+    /// The motion of each tick since the scan.
+    moved: Vec<Odometry>,
+}
+
+impl Noisy {
+    /// The points with less noise within a distance in metres from the robot, robot frame now.
+    fn evened(&self, far_m: f64) -> Vec<Point> {
+        let now = |point: Point| self.moved.iter().fold(point, carried);
+        let points = near(&self.scan.evened(self.sigma_m), far_m);
+        points.into_iter().map(now).collect()
+    }
 }
 
 /// The points of a scan within a distance in metres from the robot.
@@ -99,14 +115,24 @@ impl Known {
         let sigma_m = self.config.sensor.filter(Sensor::is_known).map(|sensor| sensor.sigma_m);
         let guard = &mut self.scan_guard;
         guard.reading_age_s = age_s.min(READING_MAX_AGE_S);
+        for point in guard.earlier.iter_mut().flatten() {
+            *point = carried(*point, &readings.odometry);
+        }
         if let Some(scan) = &readings.scan {
-            guard.points = near(scan, far_m);
-            guard.evened = sigma_m.map(|sigma_m| near(&scan.evened(sigma_m), far_m));
+            let mut before = std::mem::replace(&mut guard.points, near(scan, far_m));
+            before.iter_mut().for_each(|point| *point = carried(*point, &readings.odometry));
+            guard.earlier.truncate(EARLIER_SCANS - 1);
+            guard.earlier.insert(0, before);
+            guard.noisy = sigma_m.map(|sigma_m| Noisy { scan: scan.clone(), sigma_m, moved: Vec::new() });
             (guard.has_scan, guard.age_s) = (true, 0.0);
             return;
         }
-        for point in guard.points.iter_mut().chain(guard.evened.iter_mut().flatten()) {
+        for point in &mut guard.points {
             *point = carried(*point, &readings.odometry);
+        }
+        // A scan that is too old holds the robot, whatever it shows.
+        if let Some(noisy) = guard.noisy.as_mut().filter(|_| guard.age_s <= MAX_AGE_S) {
+            noisy.moved.push(readings.odometry);
         }
         guard.age_s += self.config.tick_s;
     }
@@ -123,19 +149,15 @@ impl Known {
             return Command { drive: Drive::STILL, ..command };
         }
         let (here, tick_s) = (self.as_governed(), self.config.tick_s);
-        let (state, momentum) = (&self.scan_guard, &self.governor.momentum);
-        let sent = state.sent_for(reaction_s, tick_s);
-        let guard = Guard::new(&state.points, &here, sent).passing_by(state.evened.as_deref());
-        let by_all = guard.guarded(momentum, command.drive);
-        let is_late = by_all.is_late;
-        let evens = by_all.before.is_some() && (state.blocked.evens || state.blocked.for_s >= NOISE_S);
-        let Guarded { drive, before, .. } = match &state.evened {
-            Some(evened) if evens => Guard::new(evened, &here, sent).guarded(momentum, command.drive),
-            _ => by_all,
-        };
+        let state = &self.scan_guard;
+        let guard = Guard::new(&state.points, &here, state.sent_for(reaction_s, tick_s))
+            .remembering(state.earlier.iter().map(Vec::as_slice));
+        let Guarded { drive, before, is_late } = guard.guarded(&self.governor.momentum, command.drive);
+        let evened =
+            state.noisy.as_ref().filter(|_| is_late).map(|noisy| noisy.evened(reach_m(&self.config)));
         let touches = |reaction_s: f64| {
-            let points = state.evened.as_ref().unwrap_or(&state.points);
-            Guard::new(points, &here, state.sent_for(reaction_s, tick_s)).touches(momentum)
+            let points = evened.as_ref().unwrap_or(&state.points);
+            Guard::new(points, &here, state.sent_for(reaction_s, tick_s)).touches(&self.governor.momentum)
         };
         let is_late = is_late && touches(reaction_s);
         let is_certain = is_late && touches(0.0);
@@ -146,8 +168,7 @@ impl Known {
         let is_new = state.age_s == 0.0 || state.late_scans == 0;
         state.late_scans = if is_certain { state.late_scans + u32::from(is_new) } else { 0 };
         let is_blocked = before.is_some() && speed(drive) < BLOCKED_SHARE * speed(command.drive);
-        let for_s = if is_blocked { state.blocked.for_s + self.config.tick_s } else { 0.0 };
-        state.blocked = Blocked { for_s, evens };
+        state.blocked_s = if is_blocked { state.blocked_s + self.config.tick_s } else { 0.0 };
         if before.is_some() { rounded_command(Command { drive, ..command }) } else { command }
     }
 
@@ -179,7 +200,7 @@ impl Known {
         }
         let guard = &self.scan_guard;
         let (gap_m, direction_rad) = guard.before?;
-        if guard.late_scans < LATE_SCANS && guard.blocked.for_s < BLOCKED_S {
+        if guard.late_scans < LATE_SCANS && guard.blocked_s < BLOCKED_S {
             return None;
         }
         let (gap_m, side) = (gap_m.max(0.0), side(direction_rad));
@@ -217,7 +238,7 @@ impl Mission {
         }
         let Some(message) = self.known.guard_stop() else { return false };
         self.known.scan_guard.late_scans = 0;
-        self.known.scan_guard.blocked = Blocked::default();
+        self.known.scan_guard.blocked_s = 0.0;
         self.hold(Hold { by: HoldReason::Guard { message }, resumes: Resumes::Never });
         self.go_on_or_help();
         true

@@ -203,27 +203,6 @@ fn one_noisy_scan_holds_no_robot_and_two_do() {
     assert!(is_held_after(&[noise, none, noise, clear]));
 }
 
-/// A robot that passes a long object with the clearance that it must keep, while the scanned points scatter by 2 cm: it is
-/// neither held nor slowed down much.
-#[test]
-fn noise_does_not_stop_a_robot_that_passes_beside_something() {
-    let sensor = perception::Sensor { rays: Some(360), sigma_m: 0.02, ..perception::Sensor::UNKNOWN };
-    let mut flight = guarded(MissionConfig { sensor: Some(sensor), ..config() });
-    flight.scan_sigma_m = 0.02;
-    flight.tick(&[Order::Start]);
-    let from = flight.pose.position;
-    flight.fly(20);
-    let way = (flight.pose.position - from).normalize();
-    let (far_m, gap_m) = (20.0, 0.05);
-    let aside = Vector::new(-way.y, way.x) * (far_m + 0.25 + gap_m);
-    flight.scanner = Some((vec![(flight.pose.position + way + aside, far_m)], true));
-    let before = flight.pose.position;
-    flight.fly(120);
-    assert_eq!(flight.held_by(), None);
-    let driven_m = (flight.pose.position - before).norm();
-    assert!(driven_m > 4.0, "driven {driven_m} m");
-}
-
 /// The troubles of the scanner in the events so far.
 fn judged(flight: &Flight) -> Vec<Option<&str>> {
     let mut judged = Vec::new();

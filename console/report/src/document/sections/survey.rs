@@ -70,9 +70,9 @@ fn columns(map: &MapPart) -> Table {
         ],
     );
     table.is_cards = true;
-    for (no, column) in (1..).zip(&map.columns) {
+    for column in &map.columns {
         let row = table.row(vec![
-            Value::from(no.to_string()),
+            Value::from(column.number.to_string()),
             number(column.center.x, 3).into(),
             number(column.center.y, 3).into(),
             number(column.center_95_m, 3).into(),
