@@ -73,9 +73,6 @@ pub(crate) struct Agreement {
     /// For a scan that is taken as it is, mirrored, or rotated by half a turn: of the rays with an echo that must hit
     /// something, the share that fit.
     fits: [Share; WAYS],
-    /// The same for a scan as it is, without the echoes that come from nearer than the drawing: objects that are not drawn
-    /// explain those.
-    explained: Share,
     /// For the same, of all rays that must hit something, the share that fit.
     scores: [Share; WAYS],
     /// The agreement with earlier scans.
@@ -88,8 +85,6 @@ struct Counts {
     must: [usize; WAYS],
     echo: [usize; WAYS],
     fit: [usize; WAYS],
-    /// For a scan as it is: the echoes that contradict the drawing, whatever else is in the tank.
-    contrary: usize,
 }
 
 impl Agreement {
@@ -122,7 +117,6 @@ impl Agreement {
         let usual = self.scores[0].known().filter(|_| counts.must[0] >= LEAST_RAYS);
         self.is_doubtful = usual.is_some_and(|usual| now < SUDDEN * usual);
         self.echoes.add(counts.echo[0], counts.must[0]);
-        self.explained.add(counts.fit[0], counts.fit[0] + counts.contrary);
         for way in 0..WAYS {
             self.fits[way].add(counts.fit[way], counts.echo[way]);
             self.scores[way].add(counts.fit[way], counts.must[way]);
@@ -141,15 +135,17 @@ impl Agreement {
 
     /// The reason why the scans cannot be right; `None` if they can.
     pub(crate) fn trouble(&self) -> Option<Trouble> {
-        let [_, mirrored, turned] = self.fits.map(|share| share.known());
+        let [straight, mirrored, turned] = self.fits.map(|share| share.known());
         let scores = self.scores.map(|share| share.known());
         // A wrong scan may have few echoes where they must be, and those may fit by chance.
         let is_better = |(other, as_it_is): (f64, f64)| as_it_is < WRONG && other > MUCH_BETTER * as_it_is;
         let fits = |way: usize, fit| fit > Some(RIGHT) && scores[way].zip(scores[0]).is_some_and(is_better);
-        if fits(1, mirrored) && mirrored >= turned {
+        // Where most of the wall is hidden by objects that are not drawn, a wrong way may fit by chance.
+        let is_possible = |way: Way| !self.pairs.rule_out(way);
+        if fits(1, mirrored) && mirrored >= turned && is_possible(Way::Mirrored) {
             return Some(Trouble::Mirrored { by: Shown::Drawing });
         }
-        if fits(2, turned) {
+        if fits(2, turned) && is_possible(Way::Backwards) {
             return Some(Trouble::Backwards { by: Shown::Drawing });
         }
         match self.pairs.wrong() {
@@ -160,7 +156,7 @@ impl Agreement {
         if let Some(share) = self.echoes.known().filter(|share| *share < NOTHING) {
             return Some(Trouble::NoEcho { share });
         }
-        self.explained.known().filter(|share| *share < NOTHING).map(|share| Trouble::Misfit { share })
+        straight.filter(|share| *share < NOTHING).map(|share| Trouble::Misfit { share })
     }
 }
 
@@ -197,11 +193,7 @@ fn counts(
             if has_echo {
                 let room_m = ROOM_M + pose.gate_m(expected_m) + 0.05 * expected_m;
                 counts.echo[way] += 1;
-                let fits = (measured_m - expected_m).abs() <= room_m;
-                counts.fit[way] += usize::from(fits);
-                // An echo from inside the hull comes from no object in the tank.
-                let is_contrary = measured_m > expected_m || measured_m <= 0.0;
-                counts.contrary += usize::from(way == 0 && !fits && is_contrary);
+                counts.fit[way] += usize::from((measured_m - expected_m).abs() <= room_m);
             }
         }
     }

@@ -69,6 +69,11 @@ impl Contest {
         self.as_other += weight * (as_other - self.as_other);
     }
 
+    /// Whether the scans as they are have agreed with the motion.
+    fn is_won(&self) -> bool {
+        self.compared >= LEAST && self.as_it_is > RIGHT
+    }
+
     fn is_lost(&self) -> bool {
         self.compared >= LEAST && self.as_it_is < WRONG && self.as_other > RIGHT
     }
@@ -122,6 +127,11 @@ impl Pairs {
         let echo = |ray: usize| Some((rays.in_robot(ray), rays.range_m[ray])).filter(|(_, m)| m.is_finite());
         let echoes = (0..rays.len()).step_by(step).filter_map(echo).collect();
         self.earlier = Some(Earlier { frame: *rays.frame(), echoes });
+    }
+
+    /// Whether the motion shows that the directions of the scans are not wrong in this way.
+    pub(crate) fn rule_out(&self, way: Way) -> bool {
+        [&self.by_turn, &self.by_drive].into_iter().any(|contest| contest.other == way && contest.is_won())
     }
 
     /// The way in which the directions of the scans are wrong; `None` if they may be right.

@@ -15,10 +15,13 @@ use world::coverage::percent_text;
 pub(super) fn map_of_log(args: &MapOfArgs) -> anyhow::Result<()> {
     let refused = |what: &str| bad_input(format!("{}: {what}", args.run.display()));
     let image = args.output.with_extension("pgm");
+    if args.svg.as_ref().is_some_and(|picture| [&args.output, &image].contains(&picture)) {
+        return Err(bad_input(format!("{}: the picture needs a name of its own", image.display())));
+    }
     check_free(&args.output, Some(args.force), &[&args.run])?;
-    check_free(&image, Some(args.force), &[&args.run, &args.output])?;
+    check_free(&image, Some(args.force), &[&args.run])?;
     if let Some(picture) = &args.svg {
-        check_free(picture, Some(args.force), &[&args.run, &args.output, &image])?;
+        check_free(picture, Some(args.force), &[&args.run])?;
     }
     let input = Input::read(&args.run).map_err(|error| bad_input(error.to_string()))?;
     if input.kind() != InputKind::Scans {

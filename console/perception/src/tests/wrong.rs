@@ -198,20 +198,3 @@ fn scans_that_become_wrong_under_way_are_named_and_chart_nothing() {
         assert_eq!(drive.perception.trouble(), Some(wanted));
     }
 }
-
-/// Objects that are not drawn stand all around the robot: hardly any ray reaches the wall, but none contradicts it.
-#[test]
-fn a_floor_full_of_objects_that_are_not_drawn_is_no_misfit() {
-    let around = |k: u32| {
-        let at = geometry::unit_vector(0.35 * f64::from(k)) * 2.0;
-        column(k + 1, at.x, at.y, 0.34)
-    };
-    let mut drive = Drive::new((0..18).map(around).collect(), Vec::new());
-    drive.boundary = Boundary::Circle { radius_m: 6.0 };
-    for k in 0..40 {
-        let pose = Pose::new(0.01 * f64::from(k), 0.0, 0.0);
-        let scan = scan_of(&drive.scanner, &drive.boundary, &drive.real, &pose, drive.tick);
-        drive.take(&scan, &pose);
-        assert_eq!(drive.perception.trouble(), None, "{k}");
-    }
-}

@@ -94,7 +94,7 @@ impl Known {
     pub(super) fn next_way(&mut self) -> Option<Chosen> {
         let (now_s, here) = (self.now_s(), self.place_on_map());
         let survey = self.survey.as_mut()?;
-        let is_done = survey.leg.as_ref().is_some_and(|leg| leg.is_done(here));
+        let is_done = survey.leg.as_ref().is_some_and(|leg| leg.is_done(here, now_s));
         if is_done && let Some(leg) = survey.leg.take() {
             survey.choice.note_end(&leg);
         }
@@ -171,7 +171,7 @@ impl Known {
         let direct = self.survey.as_ref()?.goals(open, ways).into_iter().find_map(|(to, goal)| {
             let way = ways.to(goal)?;
             let bears = self.tether.as_ref().is_none_or(|tether| tether.bears_with_reserve(&way));
-            bears.then(|| chosen(to, goal, way, 0))
+            bears.then(|| chosen((to, goal), way, 0, self.now_s()))
         });
         direct.map(|chosen| (chosen, Vec::new()))
     }
@@ -187,7 +187,7 @@ impl Known {
             for (to, goal) in goals.iter().filter(|(_, goal)| survey.choice.is_beyond(*goal, now_s) == again)
             {
                 match self.way_within_limits(*goal, ways, solids) {
-                    Some(way) => return Some((chosen(*to, *goal, way, beyond.len()), beyond)),
+                    Some(way) => return Some((chosen((*to, *goal), way, beyond.len(), now_s), beyond)),
                     None => beyond.push(*goal),
                 }
             }
@@ -198,7 +198,7 @@ impl Known {
         if survey.choice.times_back >= MOST_TIMES {
             return None;
         }
-        Some((chosen(SurveyGoal::Home, home, self.way_home(home, ways)?, n_beyond), beyond))
+        Some((chosen((SurveyGoal::Home, home), self.way_home(home, ways)?, n_beyond, now_s), beyond))
     }
 
     /// A way to a goal on which the tether stays within its limits: straight there or, if the cable would then lie on the
@@ -273,10 +273,10 @@ impl Known {
     }
 }
 
-fn chosen(to: SurveyGoal, goal: Point, path: Vec<Point>, beyond_tether: usize) -> Chosen {
-    let leg = Leg::along(to, goal, &path);
+fn chosen(goal: (SurveyGoal, Point), path: Vec<Point>, beyond_tether: usize, now_s: f64) -> Chosen {
+    let leg = Leg::along(goal, &path, now_s);
     let length_m = polyline::length_m(&path);
-    Chosen { leg, event: SurveyWay { to, path, length_m, beyond_tether } }
+    Chosen { leg, event: SurveyWay { to: goal.0, path, length_m, beyond_tether } }
 }
 
 fn is_same(one: Point, other: Point) -> bool {

@@ -8,6 +8,8 @@ use world::Point;
 
 /// Distance from the end of a way within which the robot counts as there, metres.
 const THERE_M: f64 = 0.1;
+/// Least time for a way, seconds: a place beside the robot must be scanned more than once before it counts as reached.
+const LOOK_S: f64 = 1.5;
 /// Speed at corners and at the end of a way, metres per second.
 const SLOW_M_PER_S: f64 = 0.05;
 
@@ -16,13 +18,15 @@ const SLOW_M_PER_S: f64 = 0.05;
 pub(super) struct Leg {
     pub to: SurveyGoal,
     pub goal: Point,
+    /// Mission time at which the way was chosen, seconds.
+    begun_s: f64,
     follower: PathFollower,
     at_corner: CornerPatience,
 }
 
 impl Leg {
-    pub(super) fn along(to: SurveyGoal, goal: Point, way: &[Point]) -> Self {
-        Self { to, goal, follower: PathFollower::exact(way), at_corner: CornerPatience::default() }
+    pub(super) fn along((to, goal): (SurveyGoal, Point), way: &[Point], begun_s: f64) -> Self {
+        Self { to, goal, begun_s, follower: PathFollower::exact(way), at_corner: CornerPatience::default() }
     }
 
     /// Remaining length, metres.
@@ -30,9 +34,9 @@ impl Leg {
         self.follower.left_m(here)
     }
 
-    /// Whether the robot has reached the end.
-    pub(super) fn is_done(&self, here: Point) -> bool {
-        self.follower.is_done(here, THERE_M)
+    /// Whether the robot has reached the end, and scans have been made on the way or there.
+    pub(super) fn is_done(&self, here: Point, now_s: f64) -> bool {
+        self.follower.is_done(here, THERE_M) && now_s - self.begun_s >= LOOK_S
     }
 
     /// The rest of the way.
