@@ -156,7 +156,7 @@ fn of_tether(alarm: &TetherAlarm, reached: bool, promised_m: Option<f64>) -> Opt
         }
         TetherAlarm::Snag { paid_out_m, explained_m, .. } => Some(reading(*paid_out_m, *explained_m, metres)),
         TetherAlarm::Slack { slack_m, .. } => Some(reading(*slack_m, SLACK_M, (2, " m"))),
-        TetherAlarm::Broken { paid_out_m, needed_m, .. } => Some(reading(*paid_out_m, *needed_m, metres)),
-        TetherAlarm::NoReturnPath | TetherAlarm::Strayed => None,
+        // The reel takes the free end up: what was out when the break was noticed is not out now. The message states it.
+        TetherAlarm::Broken { .. } | TetherAlarm::NoReturnPath | TetherAlarm::Strayed => None,
     }
 }
