@@ -86,7 +86,7 @@ pub fn read(input: &Input, range_m: f64) -> Result<ScanLog, ImportError> {
 fn log(messages: Vec<Message>, range_m: f64) -> ScanLog {
     let mut notes = Vec::new();
     let first_s = messages.first().map_or(0.0, |message| message.time_s);
-    let has_times = messages.iter().any(|message| message.time_s != first_s);
+    let has_times = messages.iter().any(|message| (message.time_s - first_s).abs() > 0.0);
     if !has_times && messages.len() > 1 {
         notes.push(format!("the log has no times; {STEP_S} s are assumed between two scans"));
     }

@@ -38,7 +38,7 @@ pub(super) fn map_of_log(args: &MapOfArgs) -> anyhow::Result<()> {
     let shown = shown(&log, &recorded).map_err(|error| refused(&error.to_string()))?;
     ros_files(args, &shown.map)?;
     if let Some(file) = &args.svg {
-        let shapes = shown.found.iter().map(|found| &found.shape);
+        let shapes = shown.found.iter().map(|found| (&found.shape, found.sigma_m));
         let picture = report::drawing::scanned(&shown.boundary, &shown.map, shapes, &shown.way);
         let picture = picture.ok_or_else(|| refused("the map could not be drawn"))?;
         write_file("the picture", file, &picture)?;

@@ -9,13 +9,15 @@ use world::{Boundary, Point, Shape};
 
 /// Width of the picture, millimetres.
 const WIDTH_MM: f64 = 270.0;
+/// Standard deviation of an outline, metres, above which it is dashed: a disc behind a wall of which only a piece was seen.
+const SURE_M: f64 = 0.1;
 
-/// The picture as an SVG document; y is up. The map's floor is `boundary`; `found` are the obstacles that the tracker found,
-/// and `way` is the way of the scanner. `None` if the text of the map's cells is damaged.
+/// The picture as an SVG document; y is up. The map's floor is `boundary`; `found` are the obstacles that the tracker found, with
+/// the standard deviations of their outlines in metres, and `way` is the way of the scanner. `None` if the text of the map's cells is damaged.
 pub fn scanned<'a>(
     boundary: &Boundary,
     map: &SurveyMap,
-    found: impl Iterator<Item = &'a Shape>,
+    found: impl Iterator<Item = (&'a Shape, f64)>,
     way: &[Point],
 ) -> Option<String> {
     let states = map.states()?;
@@ -27,8 +29,13 @@ pub fn scanned<'a>(
         sheet.grid((map.grid.low, map.grid.cell_m), size, is_in, 0.0, &format!(r#"fill="{fill}""#));
     }
     sheet.line(way, &format!(r#"stroke="{}" stroke-width=".2""#, colour::TRACK));
-    for shape in found {
-        sheet.shape(shape, &format!(r#"fill="none" stroke="{}" stroke-width=".35""#, colour::MISSED));
+    for (shape, sigma_m) in found {
+        let dashes = if sigma_m > SURE_M { r#" stroke-dasharray="1 .7""# } else { "" };
+        let style = format!(r#"stroke="{}" stroke-width=".35"{dashes}"#, colour::MISSED);
+        match shape {
+            Shape::Polyline { points, .. } => sheet.line(points, &style),
+            _ => sheet.shape(shape, &format!(r#"fill="none" {style}"#)),
+        }
     }
     for column in &map.columns {
         sheet.shape(&column.shape(), &format!(r#"fill="{}""#, colour::SOLID));
@@ -47,7 +54,7 @@ pub fn scanned<'a>(
         (colour::OUT, "echoes on the map"),
         (colour::OUT_GROUND, "not seen"),
         (colour::SOLID, "column on the map"),
-        (colour::MISSED, "outline of an obstacle of the tracker"),
+        (colour::MISSED, "tracked obstacle (dashed: not certain)"),
         (colour::TRACK, "way of the scanner"),
     ]);
     Some(sheet.into_document("Map of recorded scans"))

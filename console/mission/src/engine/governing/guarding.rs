@@ -120,7 +120,9 @@ impl Known {
         }
         if let Some(scan) = &readings.scan {
             let mut before = std::mem::replace(&mut guard.points, near(scan, far_m));
-            before.iter_mut().for_each(|point| *point = carried(*point, &readings.odometry));
+            for point in &mut before {
+                *point = carried(*point, &readings.odometry);
+            }
             guard.earlier.truncate(EARLIER_SCANS - 1);
             guard.earlier.insert(0, before);
             guard.noisy = sigma_m.map(|sigma_m| Noisy { scan: scan.clone(), sigma_m, moved: Vec::new() });

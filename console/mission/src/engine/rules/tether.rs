@@ -118,7 +118,7 @@ impl TetherRule {
 fn before_own_cable(seen: &Seen<'_>) -> Option<Verdict> {
     let left_m = seen.left_ahead_m?;
     let message = format!(
-        "hull about to reach its own tether: the reel has stopped, and {left_m:.1} m of slack lie on the floor; order the drive \
+        "hull about to reach its own tether: the reel has stopped, and {left_m:.1} m of slack lie on the floor; ask for a way \
          back"
     );
     Some(stay(seen, message, Outcome::Aborted))
