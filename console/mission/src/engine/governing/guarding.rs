@@ -42,7 +42,7 @@ const NAMED_AFTER_S: f64 = 0.5;
 pub(in crate::engine) struct ScanGuard {
     /// The points of the last scan, in the robot frame now.
     points: Vec<Point>,
-    /// The points of the scans before, the latest first, in the robot frame now.
+    /// The points of the scans before, the latest first, in the robot frame now; with less noise, if it is known.
     earlier: Vec<Vec<Point>>,
     /// The last scan and the motion since then, if the noise of the scanner is known: the robot brakes for every single
     /// point, but noise alone does not hold the robot.
@@ -119,7 +119,10 @@ impl Known {
             *point = carried(*point, &readings.odometry);
         }
         if let Some(scan) = &readings.scan {
+            // Of a surface, noise must not remain for several scans; of a thin post, the points stay as they are.
+            let evened = guard.noisy.as_ref().map(|noisy| noisy.evened(far_m));
             let mut before = std::mem::replace(&mut guard.points, near(scan, far_m));
+            before = evened.unwrap_or(before);
             for point in &mut before {
                 *point = carried(*point, &readings.odometry);
             }
