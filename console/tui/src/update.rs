@@ -196,7 +196,7 @@ fn stop(model: &mut Model) -> Vec<Effect> {
 /// answer has not read the question, and a later Enter must not confirm it.
 fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
     match model.ui.overlay {
-        // Esc closes what is open; pressed once more, it is no mistake.
+        // Esc closes what is open. A second Esc closes nothing, but the operator needs no message about it.
         Overlay::None if key == Key::Esc => {}
         Overlay::None => {
             let accept = find::row(ActionId::Accept);

@@ -36,7 +36,7 @@ pub(super) fn clauses(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String>
     if head == Head::NotConfirmed {
         clauses.insert(1, if is_drivable { MAY_MOVE } else { MAY_MOVE_SHORT }.into());
     }
-    // Once no way back was found, the drive back is no remedy.
+    // After a search without a way back, the state line does not offer the drive back.
     let has_no_way = matches!(model.live.way_back, Some(Err(_)));
     clauses.retain(|clause| !(has_no_way && clause.starts_with("<return>")));
     clauses.into_iter().chain(message(by).filter(|_| is_drivable)).collect()
