@@ -15,8 +15,9 @@ use world::coverage::percent_text;
 pub(super) fn map_of_log(args: &MapOfArgs) -> anyhow::Result<()> {
     let refused = |what: &str| bad_input(format!("{}: {what}", args.run.display()));
     let image = args.output.with_extension("pgm");
-    if args.svg.as_ref().is_some_and(|picture| [&args.output, &image].contains(&picture)) {
-        return Err(bad_input(format!("{}: the picture needs a name of its own", image.display())));
+    if let Some(picture) = args.svg.as_ref().filter(|picture| [&args.output, &image].contains(picture)) {
+        let why = "the map or its image has this name; choose another name for the picture";
+        return Err(bad_input(format!("{}: {why}", picture.display())));
     }
     check_free(&args.output, Some(args.force), &[&args.run])?;
     check_free(&image, Some(args.force), &[&args.run])?;
